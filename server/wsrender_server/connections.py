@@ -113,7 +113,8 @@ class BodyLayer:
                 return await receive()
             ends = monotonic() + self._timeout_s if ends is None else ends
             try:
-                message = await asyncio.wait_for(receive(), ends - monotonic())
+                async with asyncio.timeout(ends - monotonic()):
+                    message = await receive()
             except TimeoutError:
                 raise HttpProblem(408, f"the body did not come within {self._timeout_s:g} s and 16 KiB/s") from None
             ends += len(message.get("body", b"")) / SLOWEST

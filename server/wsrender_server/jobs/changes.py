@@ -76,7 +76,8 @@ class Watch:
     async def wait(self, news: asyncio.Event, timeout_s: float) -> bool:
         """Wait until what was read with ``news`` is old; at the timeout it is taken to be, and False returned."""
         try:
-            await asyncio.wait_for(news.wait(), timeout_s)
+            async with asyncio.timeout(timeout_s):
+                await news.wait()
         except TimeoutError:
             self._read.clear()
             return False

@@ -65,7 +65,8 @@ async def kinetostatic_stream(websocket: WebSocket) -> None:
 async def _serve(websocket: WebSocket, principal: Principal) -> None:
     parts: Parts = websocket.app.state.parts
     try:
-        text = await asyncio.wait_for(websocket.receive_text(), OPEN_S)
+        async with asyncio.timeout(OPEN_S):
+            text = await websocket.receive_text()
     except TimeoutError:
         raise HttpProblem(400, f"no message came within {OPEN_S:g} s", "silent") from None
     except KeyError:

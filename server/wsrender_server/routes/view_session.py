@@ -111,7 +111,8 @@ async def edited_view_session(websocket: WebSocket) -> None:
 async def _first(websocket: WebSocket, most: int) -> bytes:
     """The first message, of so many bytes at most. Raises HttpProblem."""
     try:
-        message = await asyncio.wait_for(websocket.receive(), OPEN_S)
+        async with asyncio.timeout(OPEN_S):
+            message = await websocket.receive()
     except TimeoutError:
         raise HttpProblem(400, f"no message came within {OPEN_S:g} s", "silent") from None
     if message["type"] == "websocket.disconnect":
@@ -159,7 +160,8 @@ async def _to_engine(websocket: WebSocket, session: ViewSession) -> None:
     rate = MessageRate(MOST_PER_S)
     while True:
         try:
-            message = await asyncio.wait_for(websocket.receive(), IDLE_S)
+            async with asyncio.timeout(IDLE_S):
+                message = await websocket.receive()
         except TimeoutError:
             await websocket.close(NORMAL, "idle")
             return
@@ -195,7 +197,8 @@ def _refused_in(answer: bytes) -> dict[str, str] | None:
 
 async def _taken_in(sending: Awaitable[None]) -> None:
     try:
-        await asyncio.wait_for(sending, SEND_S)
+        async with asyncio.timeout(SEND_S):
+            await sending
     except TimeoutError:
         raise HttpProblem(409, f"the page took in nothing for {SEND_S:g} s", "stalled") from None
 
@@ -207,10 +210,12 @@ async def _refuse(websocket: WebSocket, problem: dict[str, Any]) -> None:
     header += b" " * (-len(header) % 4)
     codes = {413: TOO_BIG, 500: INTERNAL, 503: INTERNAL}
     with contextlib.suppress(RuntimeError, TimeoutError):  # the page is gone, or takes in nothing
-        await asyncio.wait_for(websocket.send_bytes(struct.pack("<I", len(header)) + header), 1.0)
+        async with asyncio.timeout(1.0):
+            await websocket.send_bytes(struct.pack("<I", len(header)) + header)
     with contextlib.suppress(RuntimeError, TimeoutError):
         reason = f"{problem['code']}: {problem['detail']}".encode()[:LONGEST_REASON].decode(errors="ignore")
-        await asyncio.wait_for(websocket.close(codes.get(problem["status"], POLICY), reason), 1.0)
+        async with asyncio.timeout(1.0):
+            await websocket.close(codes.get(problem["status"], POLICY), reason)
 
 
 @cache

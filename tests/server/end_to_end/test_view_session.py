@@ -186,7 +186,7 @@ def test_as_many_questions_a_second_as_a_fast_screen_has_pictures_are_taken(serv
                 assert parts_of(socket.recv(60))[0]["id"] == k
             time.sleep(1.1)
         with contextlib.suppress(ConnectionClosed):
-            for k in range(245):  # in two seconds at most
+            for k in range(2000):  # more than 120 in a second, however busy the machine is
                 socket.send(json.dumps({"id": k, "ask": "dance"}))
         header, code = ended(socket, 20.0)
         assert (header["refused"]["code"], code) == ("too_fast", 1008)
