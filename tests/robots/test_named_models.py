@@ -99,6 +99,13 @@ def test_a_collection_that_is_not_installed_says_which_extra_has_it(name, monkey
         ws.load_robot(name)
 
 
+def test_what_is_given_goes_before_what_the_collection_says(monkeypatch, tmp_path):
+    model = named_models.NamedModel(tmp_path / "a.xacro", {"a": "1", "b": "2"}, {"p": "here"})
+    monkeypatch.setitem(named_models._COLLECTIONS, "menagerie", lambda name: model)
+    found = named_models.resolved("menagerie:arm", {"a": "3"}, {"p": "there", "q": "here"})
+    assert found == (model.path, {"a": "3", "b": "2"}, {"p": "there", "q": "here"})
+
+
 def test_a_folder_of_a_drive_and_a_name_with_a_colon_are_no_collection():
     assert named_models.collection_of("C:robot.xml") is named_models.collection_of("a:b") is None
 

@@ -44,6 +44,32 @@ def test_who_comes_while_others_are_answered_is_answered_together_with_the_rest(
     assert together.answer(7) == 14  # nobody is left to lead
 
 
+def test_one_leads_at_a_time():
+    """Who comes while the second transaction is under way waits, too."""
+    turns, asked = threading.Semaphore(0), []
+
+    def answer(numbers):
+        asked.append(list(numbers))
+        assert turns.acquire(timeout=20)
+        return numbers
+
+    together = Together(answer)
+    with ThreadPoolExecutor(4) as pool:
+        first = pool.submit(together.answer, 1)
+        wait_until(lambda: asked, what="the first")
+        second = pool.submit(together.answer, 2)
+        wait_until(lambda: together._waiting, what="the second")
+        turns.release()
+        wait_until(lambda: len(asked) == 2, what="the second to lead")
+        third = pool.submit(together.answer, 3)
+        wait_until(lambda: together._waiting or len(asked) > 2, what="the third")
+        time.sleep(0.1)
+        begun = list(asked)
+        turns.release(9)
+        assert [each.result(20) for each in (first, second, third)] == [1, 2, 3]
+    assert begun == [[1], [2]]
+
+
 def test_all_meet_what_meets_their_transaction_and_the_next_goes_on():
     faults = [RuntimeError("gone")]
 
