@@ -7,12 +7,14 @@ from types import TracebackType
 from typing import Self, TextIO
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from wsrender.notebook import NotebookBar, in_notebook
+from wsrender.notebook import display, in_notebook
 
 QUIET_S = 1.0  # shorter work shows nothing
 LINE_EVERY_S = 5.0  # off a terminal
+DRAWN_EVERY_S = 0.1  # in a notebook
 
 
 class RunProgress:
@@ -22,7 +24,7 @@ class RunProgress:
     """
 
     def __init__(self, stream: TextIO | None = None):
-        self._shown = _Notebook() if stream is None and in_notebook() else _shown_on(stream or sys.stderr)
+        self._shown = _BelowCell() if stream is None and in_notebook() else _shown_on(stream or sys.stderr)
         self._phase: tuple[int, str] | None = None
         self._phase_start = (0.0, 0)  # time [s], done
 
@@ -76,7 +78,34 @@ class _Bar:
 
     def show(self, done: int, total: int, message: str, rate: float | None) -> None:
         size = total if done else None  # None: a moving bar
-        self._bar.update(self._task, completed=done, total=size, description=message, samples=_samples(done, rate))
+        samples = _samples(done, rate)
+        self._bar.update(self._task, completed=done, total=size, description=escape(message), samples=samples)
+
+
+class _BelowCell(_Bar):
+    """The same bar as rich draws it in a notebook; it stays there, full where the work has ended.
+
+    It is displayed by itself, not live: no widgets are needed, and a notebook that is read later still shows it.
+    """
+
+    def __init__(self):
+        super().__init__(Console(force_jupyter=True))
+        self._next = 0.0
+
+    def start(self) -> None:
+        self._handle = display(self._bar)
+
+    def stop(self, completed: bool) -> None:
+        if completed:
+            total = self._bar.tasks[self._task].total or 1
+            self._bar.update(self._task, completed=total, total=total)
+        self._handle.update(self._bar)
+
+    def show(self, done: int, total: int, message: str, rate: float | None) -> None:
+        super().show(done, total, message, rate)
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + DRAWN_EVERY_S
+            self._handle.update(self._bar)
 
 
 class _Lines:
@@ -98,17 +127,6 @@ class _Lines:
         self._next = time.monotonic() + LINE_EVERY_S
         left = f"{(total - done) / rate:.0f} s left"
         self._console.print(f"{message}: {100 * done / total:.0f} %, {_samples(done, rate)}, {left}")
-
-
-class _Notebook:
-    """A bar below the cell."""
-
-    def __init__(self):
-        self._bar = NotebookBar()
-        self.start, self.stop = self._bar.start, self._bar.stop
-
-    def show(self, done: int, total: int, message: str, rate: float | None) -> None:
-        self._bar.show(done / total if done else None, message, _samples(done, rate))
 
 
 def _samples(done: int, rate: float | None) -> str:
