@@ -9,6 +9,7 @@ from functools import cache, partial
 from itertools import repeat
 from pathlib import Path
 from typing import Any, TypeVar
+from xml.etree.ElementTree import Element
 
 from defusedxml import DefusedXmlException
 from pydantic import TypeAdapter
@@ -44,8 +45,8 @@ LONGEST_S = 60.0  # that a long body may take
 EDITED: TypeAdapter[Edited] = TypeAdapter(Edited)
 
 
-def check_model(field: str, text: str, prefix: str = "") -> str:
-    """The name of the root element of XML that looks harmless; nothing is compiled.
+def check_model(field: str, text: str, prefix: str = "") -> Element:
+    """The root element of XML that looks harmless; nothing is compiled.
 
     ``field`` within ``prefix`` is where in the body the text is.
 
@@ -65,7 +66,7 @@ def check_model(field: str, text: str, prefix: str = "") -> str:
         raise refusal(problem_of_error(wrong, prefix), 409)
     if root.tag == "mujoco":
         mjcf.refuse_includes(root, field)
-    return root.tag
+    return root
 
 
 def check_archive(field: str, content: bytes) -> None:

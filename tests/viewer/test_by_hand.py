@@ -1,13 +1,19 @@
 """What is measured, chosen in plots and dropped into the served page, by the mouse."""
 
+import base64
 import hashlib
+import io
 import json
+from typing import Any
 
 import httpx2
 import numpy as np
 import pytest
+import trimesh
 
 import wsrender as ws
+from tests.server.hostile.cases import zipped
+from tests.server.http.test_view import read_message
 from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, tip, until
 from tests.viewer.written import decoded, looking
 from wsrender.documents.robot import DHTable
@@ -91,41 +97,97 @@ def test_a_range_is_dragged_in_a_histogram_and_a_voxel_is_marked_there(watched: 
     assert len(marked) and np.abs(marked - at).max() <= 4
 
 
-def test_a_model_is_dropped_into_the_form(watched: Watched, client: ws.Client) -> None:
-    """It is uploaded, named by its SHA-256, shown, and computed; what is no model is refused where it was dropped."""
+def dropped(watched: Watched, field: Any, *files: tuple[str, bytes]) -> None:
+    """Files by name, dropped onto a field as from a folder."""
+    transfer = watched.page.evaluate_handle(
+        """(files) => {
+          const transfer = new DataTransfer();
+          for (const [name, text] of files)
+            transfer.items.add(new File([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))], name));
+          return transfer;
+        }""",
+        [[name, base64.b64encode(content).decode()] for name, content in files],
+    )
+    field.dispatch_event("dragover", {"dataTransfer": transfer})
+    field.dispatch_event("drop", {"dataTransfer": transfer})
+
+
+def at_model(watched: Watched) -> tuple[Any, Any]:
+    """A new job's field of an uploaded model, and what is wrong there."""
     page = watched.page
-
-    def drop(text: str, name: str) -> None:
-        transfer = page.evaluate_handle(
-            """([text, name]) => {
-              const transfer = new DataTransfer();
-              transfer.items.add(new File([text], name));
-              return transfer;
-            }""",
-            [text, name],
-        )
-        field.dispatch_event("dragover", {"dataTransfer": transfer})
-        field.dispatch_event("drop", {"dataTransfer": transfer})
-
     page.goto(watched.url + "/#/new")
     page.locator('[data-pointer="#/robot"]').first.select_option(label="Robot …")
     page.locator('[data-pointer="#/robot#source"]').select_option(label="Model")
     field = page.locator('[data-pointer="#/robot/model"]')
-    drop("no model", "notes.xml")
-    page.locator('.field:has([data-pointer="#/robot/model"]) .problem', has_text="notes.xml").wait_for()
+    return field, page.locator('.field:has([data-pointer="#/robot/model"]) .problem')
+
+
+def test_a_model_is_dropped_into_the_form(watched: Watched, client: ws.Client) -> None:
+    """It is uploaded, named by its SHA-256, shown, and computed; what is no model is refused where it was dropped."""
+    page, (field, problem) = watched.page, at_model(watched)
+    dropped(watched, field, ("notes.xml", b"no model"))
+    problem.filter(has_text="notes.xml").wait_for()
     assert field.input_value() == ""
-    drop(ARM, "pair.xml")
+    dropped(watched, field, ("pair.xml", ARM.encode()))
     page.get_by_text("pair.xml is uploaded").wait_for()
+    assert problem.count() == 0
     assert field.input_value() == hashlib.sha256(ARM.encode()).hexdigest()
     page.locator(".preview-host canvas").first.wait_for()
+    assert computed(watched, client)["name"] == "pair"
+
+
+def computed(watched: Watched, client: ws.Client) -> dict[str, Any]:
+    """What the result of a small job says of the robot in the form."""
+    page = watched.page
     page.locator('[data-pointer="#/sampling"]').select_option(label="Sobol …")
     page.locator('[data-pointer="#/sampling/count"]').fill("1000")
     page.locator('[data-pointer="#/voxel_size_m"]').fill("0.1")
     page.get_by_text("Samples", exact=True).wait_for()
     with page.expect_response(lambda answer: answer.url.endswith("/v1/jobs") and answer.status == 202) as answer:
         page.get_by_role("button", name="Submit", exact=True).click()
-    document = client.job(answer.value.json()["id"]).result().document
-    assert document["robot"]["name"] == "pair"
+    return client.job(answer.value.json()["id"]).result().document["robot"]
+
+
+def test_a_folder_comes_into_the_form_as_a_zip(watched: Watched, client: ws.Client) -> None:
+    """A model alone is told which of its files are missing; with them, in a ZIP, its mesh is what is seen."""
+    page, (field, problem) = watched.page, at_model(watched)
+    alone = ARM.replace("<worldbody>", '<asset><mesh name="m" file="meshes/m.stl"/></asset><worldbody>', 1).replace(
+        "</body></body>", '<geom type="mesh" mesh="m" contype="0" conaffinity="0" mass="0"/></body></body>'
+    )
+    dropped(watched, field, ("pair.xml", alone.encode()))
+    page.get_by_text("Without files that it names (meshes/m.stl): upload the model's folder as a ZIP").wait_for()
+    wide = trimesh.creation.box((0.1, 0.1, 3.0)).export(file_type="stl")
+    for files, said in (
+        ([("a.xml", b""), ("b.stl", b"")], "Several files: drop their folder as a ZIP"),
+        ([("meshes.zip", zipped({"m.stl": wide}))], "meshes.zip"),
+    ):
+        dropped(watched, field, *files)
+        problem.filter(has_text=said).wait_for()
+    content = zipped({"arm/pair.xml": alone.encode(), "arm/meshes/m.stl": wide})
+    chooser = page.locator('.field:has([data-pointer="#/robot/model"]) input[type=file]')
+    chooser.set_input_files({"name": "arm.zip", "mimeType": "application/zip", "buffer": content})
+    page.get_by_text("arm.zip is uploaded").wait_for()
+    assert field.input_value() == hashlib.sha256(content).hexdigest()
+    assert problem.count() == 0 and page.get_by_text("Without files that it names").count() == 0
+    edited = {"robot": {"model": field.input_value()}}
+    _, blobs = read_message(httpx2.post(f"{watched.url}/v1/robots:view", json=edited, timeout=60).content)
+    (lower,) = (each for name, each in blobs.items() if name.endswith("link1.glb"))
+    assert trimesh.load(io.BytesIO(lower), file_type="glb").extents.max() == pytest.approx(3.0, rel=1e-5)
+    assert computed(watched, client)["name"] == "pair"
+
+
+def test_what_no_field_of_text_takes_is_said(watched: Watched) -> None:
+    page = watched.page
+    page.goto(watched.url + "/#/new")
+    page.locator('[data-pointer="#/robot"]').first.select_option(label="Robot …")
+    page.locator('[data-pointer="#/robot#source"]').select_option(label="Mjcf")
+    field = page.locator('[data-pointer="#/robot/mjcf"]')
+    dropped(watched, field, ("arm.zip", zipped({"arm.xml": ARM.encode()})))
+    page.get_by_text("arm.zip is a ZIP: choose the source “Model” to upload it").wait_for()
+    assert field.input_value() == ""
+    dropped(watched, field, ("pair.xml", ARM.encode()))
+    until(lambda: field.input_value() == ARM)
+    assert page.get_by_text("arm.zip is a ZIP").count() == 0
 
 
 def test_a_robot_that_is_edited_is_moved_and_its_volume_followed(watched: Watched) -> None:

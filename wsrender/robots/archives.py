@@ -7,6 +7,7 @@ import stat
 import zipfile
 from io import BytesIO
 from pathlib import Path, PurePosixPath
+from xml.etree.ElementTree import Element
 
 from wsrender.errors import InputError, ModelError
 from wsrender.robots import xml_source
@@ -42,6 +43,20 @@ _INCLUDED = re.compile(rb"""<include\s[^>]{0,200}?file\s{0,9}=\s{0,9}["']([^"'<]
 def is_archive(content: bytes) -> bool:
     """Whether bytes begin as a ZIP does."""
     return content[:4] in (b"PK\x03\x04", b"PK\x05\x06")
+
+
+def files_named(model: Element) -> list[str]:
+    """Meshes and other files that a model's text leads to, each once: where it was uploaded alone they are missing."""
+    found: dict[str, None] = {}
+    for element in model.iter():
+        name = ""
+        if model.tag == "mujoco" and element.tag in ("mesh", "hfield", "include"):
+            name = element.get("file", "")
+        elif element.tag == "mesh":
+            name = element.get("filename") or element.findtext("uri") or ""
+        if name := name.strip():
+            found[name] = None
+    return list(found)
 
 
 class Archive:

@@ -18,7 +18,8 @@ _IDLE = {"user", "actdim", "nsample", "delay", "interp"}
 _HOLD_BODIES = ("body", "frame", "replicate")
 _REFUSED = {
     "include": "includes are refused where no folder is known to read them from: inline the file, by putting what is "
-    "inside its <mujoco> element in the place of <include>, or load the model by its path where it stands",
+    "inside its <mujoco> element in the place of <include>, load the model by its path where it stands, or upload its "
+    "folder as a ZIP",
     "attach": "attached models are refused: inline the model",
     "model": "model assets are refused: inline the model",
     "composite": "composite bodies are not supported",

@@ -11,7 +11,7 @@ from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.documents.shapes import MEDIA_TYPES
-from wsrender.robots import library
+from wsrender.robots import archives, library
 from wsrender_server.admission import check_archive, check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.hosts import address
@@ -23,6 +23,7 @@ from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
 ZIP_TYPE = "application/zip"
+MOST_NAMED, LONGEST_NAME = 100, 500  # of files that are missing
 FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values(), ZIP_TYPE]))
 
 router = APIRouter(prefix="/v1")
@@ -75,6 +76,13 @@ class ModelView(View):
     """Its size."""
     href: str
     """Where it is."""
+
+
+class UploadedModelView(ModelView):
+    """What was uploaded."""
+
+    missing_files: list[str]
+    """Meshes and other files that its text names and that are not in it, the first 100: upload the folder as a ZIP."""
 
 
 class KeptModelView(ModelView):
@@ -144,7 +152,8 @@ _MODEL_BODY = {
 
 
 @router.post(
-    "/models", tags=["models"], summary="Upload a model, a mesh or a table", status_code=201, response_model=ModelView,
+    "/models", tags=["models"], summary="Upload a model, a mesh or a table", status_code=201,
+    response_model=UploadedModelView,
     responses={
         201: {
             "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
@@ -159,7 +168,7 @@ def upload_model(
     principal: Submitter,
     response: Response,
     body: Annotated[tuple[str, bytes], Depends(_uploaded_body)],
-) -> ModelView:
+) -> UploadedModelView:
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
     Or a ZIP of such a model with the files that it includes and its meshes: plain files of relative names, each once,
@@ -170,15 +179,17 @@ def upload_model(
     by the jobs that name it; meshes of a model travel in a ZIP alone.
     """
     media_type, text = body
+    missing: list[str] = []
     if media_type in XML_TYPES:
-        check_model("document", decoded_model(text))
+        named = archives.files_named(check_model("document", decoded_model(text)))
+        missing = [name[:LONGEST_NAME] for name in named[:MOST_NAMED]]
     elif media_type == ZIP_TYPE:
         check_archive("document", text)
     elif not text:
         raise HttpProblem(409, "the file is empty", "invalid_model")
     sha256 = server.store.put_model(principal.owner, text)
     response.headers["Location"] = href = address(f"/v1/models/{sha256}")
-    return ModelView(sha256=sha256, bytes=len(text), href=href)
+    return UploadedModelView(sha256=sha256, bytes=len(text), href=href, missing_files=missing)
 
 
 @router.get(

@@ -247,6 +247,25 @@ def test_zips_of_models(client, submit):
         assert answer.status_code in (409, 422)
 
 
+@pytest.mark.parametrize(
+    ("text", "missing"),
+    [
+        ('<mujoco><asset><mesh name="a" file="a.stl"/><mesh name="b" file="a.stl"/><mesh name="c" vertex="0 0 0"/>'
+         '<hfield name="h" file="h.png"/><texture file="t.png"/></asset></mujoco>', ["a.stl", "h.png"]),
+        ('<robot><link name="a"><visual><geometry><mesh filename="package://p/a.dae"/></geometry></visual></link></robot>',
+         ["package://p/a.dae"]),
+        ("<sdf><model><link><visual><geometry><mesh><uri> m.dae </uri></mesh></geometry></visual></link></model></sdf>",
+         ["m.dae"]),
+        ("<mujoco><asset>" + "".join(f'<mesh file="{k}{"x" * 600}"/>' for k in range(120)) + "</asset></mujoco>",
+         [f"{k}{'x' * 600}"[:500] for k in range(100)]),
+        ("<mujoco><worldbody/></mujoco>", []),
+    ],
+)  # fmt: skip
+def test_an_upload_says_which_files_it_lacks(client, text, missing):
+    response = client.post("/v1/models", content=text, headers={"Content-Type": "application/xml"})
+    assert response.json()["missing_files"] == missing
+
+
 @pytest.mark.parametrize("ending", ["stl", "obj", "ply"])
 def test_meshes(client, submit, ending):
     content = trimesh.creation.box((0.1, 0.2, 0.3)).export(file_type=ending)
@@ -320,7 +339,7 @@ def test_models_are_listed_and_deleted_by_their_owner(client, submit):
     text = (library.find("scara")).read_text()
     sent = client.post("/v1/models", content=text, headers=MODEL["headers"]).json()
     (kept,) = client.get("/v1/models").json()["items"]
-    assert kept.pop("created_at") and kept == sent
+    assert kept.pop("created_at") and kept | {"missing_files": []} == sent
     job = submit(robot={"model": sent["sha256"]})
     assert "unfinished job" in problem_of(client.delete(sent["href"]), 409, "invalid_transition")["detail"]
     client.post(f"/v1/jobs/{job['id']}:cancel")

@@ -4,10 +4,12 @@ import type { ComponentChildren } from "preact";
 import { createContext } from "preact";
 import { useContext, useEffect, useId, useState } from "preact/hooks";
 import { isExact, parse, typedNumber } from "../../json";
+import { message, size } from "../parts";
 import { plain, step, unit, words, type Json, type JsonObject, type Schema, type Schemas } from "./schema";
 
 export interface Problem { pointer: string; detail: string }
-export interface FormContext { schemas: Schemas; problems: Problem[]; upload(file: File): Promise<string> }
+export interface Uploaded { sha256: string; missing_files: string[] }
+export interface FormContext { schemas: Schemas; problems: Problem[]; upload(file: File): Promise<Uploaded> }
 export const Form = createContext<FormContext>(null as unknown as FormContext);
 
 interface FieldProps {
@@ -22,6 +24,7 @@ interface FieldProps {
 
 const LEAVES = ["number", "integer", "string", "boolean"];
 const LONG = /text of an? /i;
+const MOST_TEXT = 16 * 2 ** 20; // bytes that a field of text takes
 
 /** Any field. */
 export function Field(props: FieldProps) {
@@ -124,7 +127,12 @@ function NumberField(props: FieldProps) {
 function LongText(props: FieldProps) {
   return (
     <Labelled props={props} control={(tied) => (
-      <Drop onFile={async (file) => props.onChange(await file.text())}>
+      <Drop onFile={async (file) => {
+        if (await isArchive(file)) return `${file.name} is a ZIP: choose the source “Model” to upload it`;
+        if (file.size > MOST_TEXT) return `${file.name} has ${size(file.size)}: choose the source “Model” to upload it`;
+        props.onChange(await file.text());
+        return "";
+      }}>
         <textarea {...tied} rows={5} spellcheck={false} value={said(props.value)} onInput={(e) => props.onChange(e.currentTarget.value || undefined)} />
       </Drop>
     )} />
@@ -134,34 +142,65 @@ function LongText(props: FieldProps) {
 /** The SHA-256 of a file that is uploaded here. */
 function Upload(props: FieldProps) {
   const { upload } = useContext(Form);
-  const [state, setState] = useState<{ text: string; wrong: boolean }>({ text: "", wrong: false });
+  const [told, setTold] = useState(""), [missing, setMissing] = useState("");
   const send = async (file: File) => {
-    setState({ text: `uploading ${file.name} …`, wrong: false });
+    setTold(`uploading ${file.name} …`);
+    setMissing("");
     try {
-      props.onChange(await upload(file));
-      setState({ text: `${file.name} is uploaded`, wrong: false });
+      const { sha256, missing_files } = await upload(file);
+      props.onChange(sha256);
+      setTold(`${file.name} is uploaded`);
+      setMissing(without(missing_files));
+      return "";
     } catch (error) {
-      setState({ text: `${file.name}: ${(error as Error).message}`, wrong: true });
+      setTold("");
+      return `${file.name}: ${message(error)}`;
     }
   };
+  const typed = (sha256: string) => {
+    setTold("");
+    setMissing("");
+    props.onChange(sha256 || undefined);
+  };
   return (
-    <Labelled props={props} extra={state.wrong ? state.text : null} control={(tied) => (
+    <Labelled props={props} control={(tied) => (
       <Drop onFile={send}>
-        <input {...tied} type="text" class="mono" value={said(props.value)} placeholder="drop a file, or its SHA-256" onInput={(e) => props.onChange(e.currentTarget.value || undefined)} />
-        {!state.wrong && state.text && <p class="help" role="status">{state.text}</p>}
+        <input {...tied} type="text" class="mono" value={said(props.value)} placeholder="drop a file, or its SHA-256" onInput={(e) => typed(e.currentTarget.value)} />
+        {told && <p class="help" role="status">{told}</p>}
+        {missing && <p class="notice" role="status">{missing}</p>}
       </Drop>
     )} />
   );
 }
 
-/** A place where a file can be dropped or chosen. */
-export function Drop({ onFile, children }: { onFile(file: File): void; children?: ComponentChildren }) {
-  const [over, setOver] = useState(false);
+/** What is said of files that a model names, and that were not uploaded with it. */
+function without(files: string[]): string {
+  if (!files.length) return "";
+  const first = files.slice(0, 3).join(", ") + (files.length > 3 ? ", …" : "");
+  return `Without files that it names (${first}): upload the model's folder as a ZIP to have them.`;
+}
+
+async function isArchive(file: File): Promise<boolean> { return (await file.slice(0, 2).text()) === "PK"; }
+
+/** A place where a file can be dropped or chosen; `onFile` says what is wrong with it. */
+function Drop({ onFile, children }: { onFile(file: File): Promise<string>; children?: ComponentChildren }) {
+  const [over, setOver] = useState(false), [wrong, setWrong] = useState("");
+  const take = async (file: File | undefined) => {
+    setWrong("");
+    if (file) setWrong(await onFile(file));
+  };
+  const drop = (data: DataTransfer | null) => {
+    const folder = [...(data?.items ?? [])].map((item) => item.webkitGetAsEntry?.()).find((entry) => entry?.isDirectory);
+    if (folder) return setWrong(`${folder.name} is a folder: drop it as a ZIP`);
+    if (data && data.files.length > 1) return setWrong("Several files: drop their folder as a ZIP");
+    return take(data?.files[0]);
+  };
   return (
     <div class={`drop ${over ? "over" : ""}`} onDragOver={(e) => { e.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
-      onDrop={(e) => { e.preventDefault(); setOver(false); const file = e.dataTransfer?.files[0]; if (file) onFile(file); }}>
+      onDrop={(e) => { e.preventDefault(); setOver(false); void drop(e.dataTransfer); }}>
       {children}
-      <label class="button file">Choose a file<input type="file" onChange={(e) => { const file = e.currentTarget.files?.[0]; if (file) onFile(file); e.currentTarget.value = ""; }} /></label>
+      <label class="button file">Choose a file<input type="file" onChange={(e) => { const file = e.currentTarget.files?.[0]; void take(file); e.currentTarget.value = ""; }} /></label>
+      {wrong && <p class="problem" role="alert">{wrong}</p>}
     </div>
   );
 }

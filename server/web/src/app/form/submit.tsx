@@ -7,7 +7,7 @@ import type { Theme } from "../app";
 import type { Job } from "../jobs/job";
 import { parse } from "../../json";
 import { Failure, seconds, size, useLoaded } from "../parts";
-import { Form, ObjectFields, type Problem } from "./fields";
+import { Form, ObjectFields, type Problem, type Uploaded } from "./fields";
 import { Preview } from "./preview";
 import { Schemas, plain, words, type AnalysisSchema, type Json, type JsonObject } from "./schema";
 
@@ -70,7 +70,7 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
   const upload = async (file: File) => {
     const type = typeOf(file.name);
     const response = await api.fetch("v1/models", { method: "POST", body: file, headers: { "Content-Type": type } });
-    return ((await response.json()) as { sha256: string }).sha256;
+    return (await response.json()) as Uploaded;
   };
   const submit = async (event: Event) => {
     event.preventDefault();
@@ -201,5 +201,5 @@ function RawEditor({ text, onText }: { text: string; onText(text: string, parsed
 /** Media types that the server takes, by ending. */
 function typeOf(name: string): string {
   const ending = name.toLowerCase().split(".").pop() ?? "";
-  return { stl: "model/stl", obj: "model/obj", ply: "model/ply", npy: "application/x-npy", csv: "text/csv", parquet: "application/vnd.apache.parquet" }[ending] ?? "application/xml";
+  return { stl: "model/stl", obj: "model/obj", ply: "model/ply", npy: "application/x-npy", csv: "text/csv", parquet: "application/vnd.apache.parquet", zip: "application/zip" }[ending] ?? "application/xml";
 }
