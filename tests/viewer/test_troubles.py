@@ -1,14 +1,19 @@
 """What the served page does where something is wrong: no graphics, keys, a server that goes, hostile names."""
 
+import json
+import zlib
 from base64 import urlsafe_b64encode
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+import httpx2
 import numpy as np
+import pytest
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
-from tests.viewer.watched import JOB, PATIENCE_MS, Watched, clicked, opened, settle, until
+from tests.viewer.watched import JOB, PATIENCE_MS, Watched, clicked, differing, opened, pixels, settle, until
 from tests.viewer.written import launch
 
 SMALL = JOB | {"sampling": {"method": "sobol", "count": 1 << 14}}
@@ -116,3 +121,101 @@ def test_a_server_that_goes_is_said_and_found_again(chromium, tmp_path: Path) ->
         page.close()
     said = [each for each in view.errors + jobs.errors if "ERR_CONNECTION_REFUSED" not in each]
     assert said == []
+
+
+def packed(content: bytes) -> str:
+    """A view's settings as a link has them."""
+    deflate = zlib.compressobj(wbits=-15)
+    return urlsafe_b64encode(deflate.compress(content) + deflate.flush()).decode().rstrip("=")
+
+
+@pytest.fixture(scope="module")
+def finished(client: ws.Client) -> str:
+    """The id of a job that has a result."""
+    return client.submit(SMALL | {"best_sample": "manipulability"}).wait().id
+
+
+WRONG: dict[str, dict[str, Any]] = {
+    "every kind": {
+        "volumes": 5, "configurations": "x", "slices": [None], "camera": {"position": "a"}, "range": 3, "limits": 7,
+        "layers": None, "selected": {"volume": "nope", "cell": [1]}, "measure": [[1]], "theme": "purple",
+        "colors": {"a": 1}, "channels": [1], "mapping": {"scale": 2, "offset_m": [0, 0, 0]},
+    },
+    "within": {
+        "volumes": {"volume": {"style": "fog", "channel": 3, "threshold": "x", "cut": [{"axis": "q"}], "opacity": 9}},
+        "range": {"low": "a", "scale": "cubic"}, "layers": {"axes": {"visible": "no"}}, "slices": [{"axis": "x"}] * 9,
+        "camera": {"position": [0, 0, 0], "target": [0, 0, 0], "up": [0, 0, 1], "orthographic": False},
+    },
+    "robots": {
+        "limits": [{"joint2": ["a", None], "nope": [0, 1]}], "tools": [[1]], "placements": [[1, 2, 3]],
+        "configurations": [["a"] * 6],
+    },
+}  # fmt: skip
+LINKS = {name: packed(json.dumps(settings).encode()) for name, settings in WRONG.items()}
+LINKS |= {"no base64": "!!!", "not deflated": "AAAA", "no JSON": packed(b"hello")}
+LINKS["unfolds to half a gigabyte"] = packed(b"0" * (1 << 29))
+
+
+def test_a_link_that_is_wrong_opens_the_view_as_it_is_at_first(watched: Watched, finished: str) -> None:
+    opened(watched, f"/job/{finished}")
+    page, first = watched.page, pixels(watched)
+    for name, view in LINKS.items():
+        page.goto("about:blank")
+        page.goto(f"{watched.url}/#/job/{finished}?view={view}")
+        page.get_by_role("button", name="Show all").wait_for()
+        settle(watched)
+        assert differing(first, pixels(watched)) < 100, name
+        assert page.get_by_label("Style").input_value() == "surface", name
+    for address in ("/job/123", f"/job/{finished}0", f"/compare/{finished}", "/nowhere"):
+        page.goto(f"{watched.url}/#{address}")
+        page.get_by_text("The address of this link is no page here").wait_for()
+    page.goto(f"{watched.url}/#/job/{'0' * 32}")
+    page.get_by_text("there is no such job, or it is not yours").wait_for()
+
+
+def test_a_job_that_is_deleted_while_it_is_open_is_said(watched: Watched, client: ws.Client) -> None:
+    """Its picture stays, and answers with what it holds."""
+    job = client.submit(SMALL | {"voxel_size_m": 0.11}).wait()
+    opened(watched, f"/job/{job.id}")
+    page = watched.page
+    assert httpx2.delete(f"{watched.url}/v1/jobs/{job.id}").status_code == 204
+    clicked(watched)
+    page.get_by_text("These values are rounded to 16 bits.").wait_for()
+    page.get_by_text("No more questions about this view are answered: there is no such job").wait_for()
+
+
+def test_what_a_key_may_not_do_is_said_and_a_revoked_one_asked_for(chromium, tmp_path: Path) -> None:
+    admin, reader = "the-key-of-who-administers", "the-key-of-who-reads"
+    (tmp_path / "keys").write_text(f"{admin} ann admin,read,submit\n{reader} ann read\n")
+    with LocalServer(tmp_path / "data", ["--api-key-file", str(tmp_path / "keys")]) as server:
+        headers = {"Authorization": f"Bearer {admin}"}
+        made = httpx2.post(f"{server.url}/v1/keys", json={"name": "bob"}, headers=headers).json()
+        jobs = []
+        for secret in (admin, made["secret"]):
+            with ws.Client(server.url, token=secret) as client:
+                jobs.append(client.submit(SMALL).wait())
+        pages = []
+        for secret in (reader, made["secret"]):
+            page = chromium.new_context(viewport={"width": 1280, "height": 720}).new_page()
+            page.set_default_timeout(PATIENCE_MS)
+            page.add_init_script(f"sessionStorage.setItem('wsrender.key', {json.dumps(secret)})")
+            pages.append(Watched(page, server.url))
+        reading, revoked = pages
+        reading.page.goto(server.url)
+        reading.page.get_by_role("button", name=f"Delete job {jobs[0].id[:8]}").click()
+        reading.page.get_by_role("button", name=f"Really delete job {jobs[0].id[:8]}").click()
+        said = reading.page.get_by_text(f"Job {jobs[0].id[:8]}, delete: this key lacks the scope 'submit'")
+        said.wait_for()
+        with reading.page.expect_response("**/v1/jobs?*"):  # the list is read again
+            pass
+        assert said.count() == 1 and reading.page.locator(f"tr[data-job='{jobs[0].id}']").count() == 1
+        opened(revoked, f"/job/{jobs[1].id}")
+        clicked(revoked)
+        revoke = f"{server.url}/v1/keys/{made['id']}:revoke"
+        assert httpx2.post(revoke, headers=headers).status_code == 200
+        dialog = revoked.page.get_by_role("dialog", name="API key")
+        dialog.get_by_text("The server does not know this key.").wait_for()
+        revoked.page.get_by_text("No more questions about this view are answered: the API key was revoked").wait_for()
+        for each in pages:
+            each.page.context.close()
+            assert each.errors == []

@@ -152,6 +152,6 @@ export interface Source {
   /** Absent where there is no engine behind the page: a file. */
   ask?(request: Request): Promise<Answer>;
   /** "lost" and "back": of the server or kernel behind it. */
-  onState?(listener: (state: "lost" | "back") => void): () => void;
+  onState?(listener: (state: "lost" | "back" | Refused) => void): () => void; // Refused: no question is answered any more, and why
   close?(): void;
 }

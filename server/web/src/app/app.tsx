@@ -27,7 +27,7 @@ export function App({ api, theme }: { api: Api; theme: Signal<Theme> }) {
     };
   }, []);
   useSignalEffect(() => { if (api.refused.value !== null) setEntering(true); });
-  useEffect(() => { document.title = place.page === "jobs" ? "Jobs · wsrender" : place.page === "new" ? "New job · wsrender" : place.page === "job" ? `Job ${place.id.slice(0, 8)} · wsrender` : "Two results · wsrender"; }, [place]);
+  useEffect(() => { document.title = `${titleOf(place)} · wsrender`; }, [place]);
   const link = (to: Place, text: string, current: boolean) => <a href={hashOf(to)} aria-current={current ? "page" : undefined} onClick={(e) => { if (!e.metaKey && !e.ctrlKey) { e.preventDefault(); go(to); } }}>{text}</a>;
   return (
     <>
@@ -49,6 +49,7 @@ export function App({ api, theme }: { api: Api; theme: Signal<Theme> }) {
       {files && place.page === "job" && <section class="card drawer" aria-label="Files of the job"><h2>Files</h2><Files api={api} id={place.id} /></section>}
       <main class={`at-${place.page}`}>
         {place.page === "jobs" && <JobList key={api.key.value} api={api} go={go} />}
+        {place.page === "none" && <p class="problem page" role="alert">The address of this link is no page here: it must be that of a job or of two, whole.</p>}
         {place.page === "new" && <Submit key={JSON.stringify(place.start)} api={api} theme={theme} start={place.start} onSubmitted={() => go({ page: "jobs" })} />}
         {place.page === "job" && <JobView key={place.id + api.key.value} api={api} id={place.id} view={place.view} theme={theme} go={go} />}
         {place.page === "compare" && <Compare key={place.first + place.second + api.key.value} api={api} first={place.first} second={place.second} view={place.view} other={place.other} theme={theme} />}
@@ -56,6 +57,11 @@ export function App({ api, theme }: { api: Api; theme: Signal<Theme> }) {
       {entering && <KeyDialog api={api} onDone={() => setEntering(false)} />}
     </>
   );
+}
+
+function titleOf(place: Place): string {
+  if (place.page === "job") return `Job ${place.id.slice(0, 8)}`;
+  return { jobs: "Jobs", new: "New job", compare: "Two results", none: "No page" }[place.page];
 }
 
 export function ThemeChoice({ theme }: { theme: Signal<Theme> }) {

@@ -4,12 +4,14 @@ import type { JsonObject } from "./form/schema";
 
 export type Place =
   | { page: "jobs" }
+  | { page: "none" } // what the address says is no page
   | { page: "new"; start: JsonObject | null }
   | { page: "job"; id: string; view?: string }
   | { page: "compare"; first: string; second: string; view?: string; other?: string }; // other: the second one's view
 export type Go = (place: Place) => void;
 
 const ID = "([0-9a-f]{32})";
+const MOST_UNPACKED = 2 ** 20; // characters of a view's settings
 
 export function placeOf(hash: string): Place {
   const [path = "", query = ""] = hash.replace(/^#/, "").split("?");
@@ -17,7 +19,8 @@ export function placeOf(hash: string): Place {
   const job = path.match(new RegExp(`^/job/${ID}$`)), both = path.match(new RegExp(`^/compare/${ID}/${ID}$`));
   if (job) return { page: "job", id: job[1]!, ...(view ? { view } : {}) };
   if (both) return { page: "compare", first: both[1]!, second: both[2]!, ...(view ? { view } : {}), ...(other ? { other } : {}) };
-  return path === "/new" ? { page: "new", start: null } : { page: "jobs" };
+  if (path === "/new") return { page: "new", start: null };
+  return { page: ["", "/", "/jobs"].includes(path) ? "jobs" : "none" };
 }
 
 export function hashOf(place: Place): string {
@@ -34,12 +37,21 @@ export async function packed(value: unknown): Promise<string> {
   return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
-/** What was packed; null for text that is nothing of it. */
-export async function unpacked<T>(text: string): Promise<T | null> {
+/** What was packed; null for text that is nothing of it, or unfolds to more than a page would pack. */
+export async function unpacked(text: string): Promise<unknown> {
   try {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (each) => each.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-    return JSON.parse(await new Response(stream).text()) as T;
+    let json = "";
+    const decoder = new TextDecoder(), reader = stream.getReader();
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+      json += decoder.decode(part.value, { stream: true });
+      if (json.length > MOST_UNPACKED) {
+        await reader.cancel();
+        return null;
+      }
+    }
+    return JSON.parse(json);
   } catch {
     return null;
   }

@@ -30,6 +30,9 @@ export class Api {
     this.refused.value = null;
   }
 
+  /** The server takes no such key, or none. */
+  askForKey(): void { this.refused.value = this.key.value ? "The server does not know this key." : "This server asks for an API key."; }
+
   async fetch(path: string, init: RequestInit = {}): Promise<Response> {
     const headers = new Headers(init.headers);
     if (this.key.value) headers.set("Authorization", `Bearer ${this.key.value}`);
@@ -42,7 +45,7 @@ export class Api {
     }
     if (response.ok) return response;
     const problem = await problemOf(response);
-    if (response.status === 401) this.refused.value = this.key.value ? "The server does not know this key." : "This server asks for an API key.";
+    if (response.status === 401) this.askForKey();
     throw new ApiError(problem);
   }
 

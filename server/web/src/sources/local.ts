@@ -4,7 +4,7 @@ import { Refused, type Manifest, type Request, type Source } from "../contract";
 import { answerOf, readReply, replaced } from "./answer";
 
 export function localSource(): Source {
-  const listeners = new Set<(state: "lost" | "back") => void>();
+  const listeners = new Set<Parameters<NonNullable<Source["onState"]>>[0]>();
   const running = new Map<Request["ask"], AbortController>();
   let lost = false;
   const say = (state: boolean) => {

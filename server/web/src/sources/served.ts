@@ -1,15 +1,22 @@
 /** A job's result, and robots that are edited, from `wsrender serve`. */
 
-import type { Manifest, Source } from "../contract";
+import { Refused, type Manifest, type Source } from "../contract";
 import { parse } from "../json";
 import { readReply } from "./answer";
 import type { Api } from "./api";
 import { Session } from "./session";
 
+/** A session under the page's key, which is asked for anew where the server takes it no more. */
+function sessionOf(api: Api, path: string, first?: string): Session {
+  const session = new Session(new URL(path, api.base), () => api.key.value, first);
+  session.onState((state) => { if (state instanceof Refused && state.code === "unauthorized") api.askForKey(); });
+  return session;
+}
+
 export function jobSource(api: Api, id: string): Source {
   const path = `v1/jobs/${id}/view`;
   let session: Session | null = null;
-  const opened = () => session ??= new Session(new URL(`${path}/session`, api.base), () => api.key.value);
+  const opened = () => session ??= sessionOf(api, `${path}/session`);
   return {
     home: "served",
     manifest: async () => parse(await (await api.fetch(path)).text()),
@@ -24,7 +31,7 @@ export function jobSource(api: Api, id: string): Source {
 export function editedSource(api: Api, parts: Record<string, unknown>): Source {
   const text = JSON.stringify(parts);
   let session: Session | null = null, blobs: Record<string, ArrayBuffer> = {};
-  const opened = () => session ??= new Session(new URL("v1/robots:view/session", api.base), () => api.key.value, text);
+  const opened = () => session ??= sessionOf(api, "v1/robots:view/session", text);
   return {
     home: "served",
     manifest: async () => {

@@ -76,6 +76,7 @@ export function Preview({ api, document, theme, onChange }: PreviewProps) {
       {shown && !drawn && model.undrawn.value && <p class="help" role="status">{model.undrawn.value}</p>}
       {shown && said && <p class="help" role="status">{said}</p>}
       {shown && model.lost.value && <p class="notice" role="alert">What computes behind this preview does not answer. Looking for it again …</p>}
+      {shown && model.unanswered.value && <p class="notice" role="alert">No more questions about this preview are answered: {model.unanswered.value}</p>}
       {manifest?.omitted.map((each) => <p class="help">{each}</p>)}
       {shown && drawn && manifest!.robots.length > 0 && <div class="viewer moved"><div class="panel"><Robots key={asked} model={model} open={false} jobLabel="Into the form" onJob={(part) => onChange(shown.put(part.robot!))} /></div></div>}
       <p class="help" role="status">{shown && !model.gizmo.value ? model.said.value : ""}</p>

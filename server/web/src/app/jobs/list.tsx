@@ -12,7 +12,7 @@ const LOOK_AGAIN_MS = 4000;
 const PAGE = 50;
 
 export function JobList({ api, go }: { api: Api; go: Go }) {
-  const [jobs, setJobs] = useState<Job[] | null>(null), [next, setNext] = useState<string | null>(null), [problem, setProblem] = useState("");
+  const [jobs, setJobs] = useState<Job[] | null>(null), [next, setNext] = useState<string | null>(null), [problem, setProblem] = useState(""), [undone, setUndone] = useState("");
   const [state, setState] = useState(""), [analysis, setAnalysis] = useState(""), [label, setLabel] = useState(""), [said, setSaid] = useState("");
   const [open, setOpen] = useState(""), [marked, setMarked] = useState<string[]>([]);
   const analyses = useLoaded(async () => new Schemas(await api.description()).analyses(), [api]);
@@ -38,10 +38,14 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
     }
   };
   const more = async () => {
-    const page = await api.get<{ items: Job[]; next_cursor: string | null }>(query(next!));
-    further.current = true;
-    setJobs((before) => [...(before ?? []), ...page.items]);
-    setNext(page.next_cursor);
+    try {
+      const page = await api.get<{ items: Job[]; next_cursor: string | null }>(query(next!));
+      further.current = true;
+      setJobs((before) => [...(before ?? []), ...page.items]);
+      setNext(page.next_cursor);
+    } catch (error) {
+      setProblem(message(error));
+    }
   };
   const put = (id: string, change: (job: Job) => Job) => setJobs((before) => before && before.map((each) => (each.id === id ? change(each) : each)));
 
@@ -80,6 +84,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
     }
   };
   const act = async (job: Job, what: "cancel" | "retry" | "delete") => {
+    setUndone("");
     try {
       if (what === "delete") {
         await api.fetch(`v1/jobs/${job.id}`, { method: "DELETE" });
@@ -91,7 +96,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
       }
       setSaid(`Job ${job.id.slice(0, 8)}: ${what} is done.`);
     } catch (error) {
-      setProblem(message(error));
+      setUndone(`Job ${job.id.slice(0, 8)}, ${what}: ${message(error)}`);
     }
   };
   const mark = (id: string) => setMarked((before) => (before.includes(id) ? before.filter((each) => each !== id) : [...before.slice(-1), id]));
@@ -111,7 +116,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
         <button class="primary" onClick={() => go({ page: "new", start: null })}>New job</button>
       </div>
       <p class="hidden" role="status" aria-live="polite">{said}</p>
-      {problem && <p class="problem" role="alert">{problem}</p>}
+      {[problem, undone].map((each) => each && <p class="problem" role="alert">{each}</p>)}
       {!jobs ? !problem && <p class="wait" role="status">Reading the jobs …</p> : jobs.length === 0 ? <p class="empty">No jobs{state || analysis || label ? " like that" : " yet"}. <button class="link" onClick={() => go({ page: "new", start: null })}>Write one</button>.</p> : (
         <div class="table"><table>
           <thead><tr><th scope="col"><span class="hidden">Compare</span></th><th scope="col">Job</th><th scope="col">Analysis</th><th scope="col">State</th><th scope="col">Progress</th><th scope="col">Submitted</th><th scope="col">Labels</th><th scope="col">What to do</th></tr></thead>

@@ -8,6 +8,7 @@ import { frames, quaternion, tip } from "../../scene/kinematics";
 import { Stage, type Camera, type Motion } from "../../scene/stage";
 import { message } from "../parts";
 import { toolOf } from "./changed_job";
+import { restored } from "./restored";
 
 export type Pose = { position_m: Vector; quat_wxyz: [number, number, number, number] };
 export interface Live { busy: boolean; said: string; wrong: boolean; volume_m3?: number }
@@ -26,6 +27,7 @@ export class ViewModel {
   readonly failed = signal(""); // why there is nothing to be seen
   readonly undrawn = signal(""); // why there is nothing in 3-D
   readonly lost = signal(false);
+  readonly unanswered = signal(""); // why no question is answered any more
   readonly ready = signal(false); // the volume is there
   readonly voxel = signal<(VoxelAnswer & { rounded?: boolean }) | null>(null);
   readonly said = signal(""); // told to who can't see
@@ -50,8 +52,8 @@ export class ViewModel {
 
   get canAsk(): boolean { return Boolean(this.source.ask); }
 
-  /** Reads the manifest, then draws into a host. `restored` replaces the settings that a view begins with. */
-  async open(host: HTMLElement, restored: Partial<Settings> | null): Promise<void> {
+  /** Reads the manifest, then draws into a host. `link` holds settings other than those that a view begins with. */
+  async open(host: HTMLElement, link: unknown): Promise<void> {
     let manifest: Manifest;
     try {
       manifest = await this.source.manifest();
@@ -59,7 +61,7 @@ export class ViewModel {
       this.failed.value = message(error);
       return;
     }
-    const first = defaultSettings(manifest), settings = restored ? merged(first, restored) : first;
+    const settings = restored(defaultSettings(manifest), link, manifest);
     batch(() => {
       this.manifest.value = manifest;
       this.settings.value = { ...settings, camera: null };
@@ -101,6 +103,7 @@ export class ViewModel {
     batch(() => {
       this.live.value = this.voxel.value = this.postures.value = this.indices.value = this.placed.value = null;
       this.lost.value = false;
+      this.unanswered.value = "";
       this.manifest.value = manifest;
       this.settings.value = { ...defaultSettings(manifest), theme: this.settings.value!.theme };
       this.camera.value = null;
@@ -139,7 +142,10 @@ export class ViewModel {
   }
 
   private watchSource(): void {
-    if (this.canAsk && this.source.onState) this.stops.push(this.source.onState((state) => { this.lost.value = state === "lost"; }));
+    if (this.canAsk && this.source.onState) this.stops.push(this.source.onState((state) => batch(() => {
+      this.lost.value = state === "lost";
+      if (state !== "lost") this.unanswered.value = state === "back" ? "" : state.message;
+    })));
   }
 
   close(): void {
@@ -214,12 +220,12 @@ export class ViewModel {
     }
   }
 
-  /** The file's own values; where nothing answers those of the picture, which is said. */
+  /** The file's own values; where nothing answers, or does any more, those of the picture, which is said. */
   private async exact(name: string, cell: Vector): Promise<VoxelAnswer> {
     try {
       return (await this.ask({ ask: "voxel", volume: name, cell, voxel_size_m: this.volume(name)?.voxel_size_m } as Request)) as VoxelAnswer;
     } catch (error) {
-      if (!(error instanceof Refused) || error.code !== "lost" || this.added.has(name)) throw error;
+      if (!(error instanceof Refused) || !(error.code === "lost" || this.unanswered.value) || this.added.has(name)) throw error;
       return this.held(name, cell, this.stage?.valuesAt(name, cell));
     }
   }
@@ -508,13 +514,4 @@ export class ViewModel {
   private tell(error: unknown): void {
     if ((error as Error).name !== "AbortError") this.said.value = message(error);
   }
-}
-
-/** Restored settings over those that a view begins with, by the keys of today; what an older page did not know is as at first. */
-function merged(first: Settings, restored: Partial<Settings>): Settings {
-  const known = Object.fromEntries(Object.entries(restored).filter(([key]) => key in first)) as Partial<Settings>;
-  const live = first.configurations.map((_, robot) => `live_${robot}`), plain = Object.values(first.volumes)[0]; // they are computed again
-  const volumes = Object.fromEntries([...Object.keys(first.volumes), ...live].filter((name) => first.volumes[name] || known.volumes?.[name]).map((name) => [name, { ...(first.volumes[name] ?? plain!), ...known.volumes?.[name] }]));
-  const configurations = first.configurations.map((home, robot) => (known.configurations?.[robot]?.length === home.length ? known.configurations[robot]! : home));
-  return { ...first, ...known, volumes, configurations, range: { ...first.range, ...known.range }, layers: { ...first.layers, ...known.layers }, channels: { ...first.channels, ...known.channels } };
 }

@@ -4,7 +4,6 @@ import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Source } from "../../contract";
-import type { Settings } from "../../settings";
 import type { Theme } from "../app";
 import type { JsonObject } from "../form/schema";
 import { packed, unpacked } from "../route";
@@ -13,6 +12,7 @@ import { Colors, Cuts, Layers, MappingPanel, Painted, Slices, VolumePanel } from
 import { ViewModel } from "./model";
 import { PictureDialog } from "./picture";
 import { Plots } from "./plots";
+import { themeOf } from "./restored";
 import { Robots } from "./robots";
 
 const KEEP_MS = 500;
@@ -42,11 +42,11 @@ export function Viewer(props: ViewerProps) {
     setRight(wide && props.panels !== false);
     let gone = false;
     void (async () => {
-      const restored = props.view ? await unpacked<Partial<Settings>>(props.view) : null;
+      const link = props.view ? await unpacked(props.view) : null;
       if (gone) return;
-      if (restored?.theme) theme.value = restored.theme;
+      theme.value = themeOf(link) ?? theme.value;
       props.onModel?.(model);
-      await model.open(host.current!, restored);
+      await model.open(host.current!, link);
       if (gone) model.close();
     })();
     return () => {
@@ -89,6 +89,7 @@ export function Viewer(props: ViewerProps) {
         <button aria-expanded={right} onClick={() => setRight(!right)} disabled={!shown}>Explore</button>
       </div>
       {model.lost.value && <p class="banner" role="alert">What computes behind this view does not answer. Looking for it again …</p>}
+      {model.unanswered.value && <p class="banner" role="alert">No more questions about this view are answered: {model.unanswered.value}</p>}
       <p class="hidden" role="status" aria-live="polite">{model.said.value} {copied}</p>
       <div class="stage-row">
         {shown && left && (
