@@ -23,6 +23,7 @@ from tests.library.second_sources import exact
 from wsrender.robots import library
 
 CONFIGURATIONS = 400  # by which pairs that the fit brought to touch are found
+NO_MASS = "1e-12"  # of links whose mass no source gives [kg, kg m²]
 ALWAYS = 0.9  # of them: links that touch so often do at their joint
 
 
@@ -121,7 +122,9 @@ def _numbers(text: str) -> list[float]:
 def mjcf(name: str, links: list[Link], T_tip: np.ndarray, description: str, source: str, exclude=(), hulls=None):
     """The MJCF (an element) of a chain; with ``hulls`` (a folder) those of the meshes stand for the shapes."""
     root = Element("mujoco", model=name)
-    SubElement(root, "compiler", angle="radian", autolimits="true")
+    compiler = SubElement(root, "compiler", angle="radian", autolimits="true")
+    if not all(link.inertials for link in links[1:]):  # MuJoCo asks for a mass of all that moves
+        compiler.attrib |= {"boundmass": NO_MASS, "boundinertia": NO_MASS}
     custom = SubElement(root, "custom")
     speeds = [float(_limit(link).get("velocity", 0)) for link in links[1:]]
     if any(speeds):

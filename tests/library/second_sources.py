@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.library.published_screws import SCREWS
 from tests.library.published_tables import TABLES
 from tests.robots.model_packages import folders
 
@@ -33,12 +34,26 @@ def ssik(name: str, base: np.ndarray | None = None, tool: np.ndarray | None = No
     joints = list(zip(module._JOINT_T_LEFTS, module._JOINT_AXES, module._JOINT_T_RIGHTS, strict=True))
 
     def poses(q: np.ndarray) -> np.ndarray:
-        T = np.tile(np.eye(4) if base is None else base, (len(q), 1, 1))
+        T, tilt = np.tile(np.eye(4) if base is None else base, (len(q), 1, 1)), np.eye(4)
         for k, (left, axis, right) in enumerate(joints):
-            T = T @ exact(left) @ rotations(np.asarray(axis), q[:, k]) @ exact(right)
+            T = T @ exact(tilt @ left)
+            axis, tilt = upright(np.asarray(axis, dtype=float))
+            T = T @ rotations(axis, q[:, k]) @ exact(tilt @ right)
         return T @ (np.eye(4) if tool is None else tool)
 
     return poses
+
+
+def upright(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """An axis (3,) without the tilt of angles written as 1.5708, and the turn (4, 4) that takes the tilt away.
+
+    Where ssik turns every link's frame to the base's, what follows the axis is tilted with it.
+    """
+    straight = np.round(axis) if np.abs(axis - np.round(axis)).max() < 1e-4 else axis
+    T, about = np.eye(4), np.cross(axis, straight)
+    if (sine := np.linalg.norm(about)) > 0:
+        T = rotations(about, np.array([np.arcsin(sine)]))[0]
+    return straight, T
 
 
 def rotations(axis: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -136,9 +151,16 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "ur10": partial(urdf, "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
     "ur3e": partial(ssik, "universal_robots.ur3e"),
     "ur10e": partial(ssik, "universal_robots.ur10e"),
+    "franka_fr3": partial(ssik, "franka.fr3"),
+    "kinova_gen3": partial(ssik, "kinova.gen3"),
+    "kinova_gen3_lite": partial(ssik, "kinova.gen3_lite"),
+    "kinova_j2n6s300": partial(ssik, "kinova.jaco2"),
+    "kinova_j2s7s300": partial(ssik, "kinova.j2s7s300"),
     "kinova_j2s6s200": partial(
         urdf, "kinova_description/robots/kinova.urdf", "j2s6s200_link_base", "j2s6s200_end_effector"
     ),
+    "so100": partial(urdf, "so_arm_description/urdf/so100.urdf", "base", "gripper"),
+    "so101": partial(urdf, "so_arm_description/urdf/so101.urdf", "base_link", "gripper_link"),
     "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
     "unitree_z1": partial(ssik, "unitree.z1"),
     "viperx300s": partial(ssik, "trossen.viperx300s"),
@@ -153,4 +175,4 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "fanuc_crx10ia_l": partial(ssik, "fanuc.crx10ial"),
     "fanuc_crx5ia": partial(ssik, "fanuc.crx5ia", tool=Z_OUT_X_UP),
     "fanuc_lrmate200id": partial(ssik, "fanuc.lrmate200id", tool=Z_OUT_X_UP),
-} | {name: partial(getattr, table, "poses") for name, table in TABLES.items()}
+} | {name: partial(getattr, table, "poses") for name, table in (TABLES | SCREWS).items()}
