@@ -22,6 +22,7 @@ RADII = 5  # of housings about an axis that are tried
 ALIKE = 0.001  # [m] between radii of one housing's triangles
 BEST = 3  # choices of housings about whose rest more than one shape is tried
 CUTS = 6  # planes that are tried
+SPLITS = 4  # planes across each axis that are tried where a part is cut in two
 EACH = 0.02  # of the volume of one shape: what another must save
 PROBES = 2048  # points by which the volume of shapes that overlap is measured
 MARGIN = 0.05  # [m] around the mesh, where the probes are
@@ -76,10 +77,11 @@ class Shape:
         return {"type": self.kind, "size": _words(self.size[:1]), "fromto": _words([*a, *b])}
 
 
-def fit(mesh: trimesh.Trimesh, axes: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[Shape]:
+def fit(mesh: trimesh.Trimesh, axes: Sequence[tuple[np.ndarray, np.ndarray]] = (), parts: int = 0) -> list[Shape]:
     """Shapes of which one or another contains each of the mesh's triangles, made small.
 
-    ``axes``: of its joints, each a point and a direction (3,), about which housings are.
+    ``axes``: of its joints, each a point and a direction (3,), about which housings are. ``parts``: what is no housing
+    is besides cut in two again and again, across any axis, into at most so many parts: for a body that is not convex.
     """
     edge = float(np.max(mesh.extents)) / EDGES
     corners = np.asarray(mesh.subdivide_to_size(edge, max_iter=20).triangles)
@@ -102,7 +104,41 @@ def fit(mesh: trimesh.Trimesh, axes: Sequence[tuple[np.ndarray, np.ndarray]] = (
         starts.append((found, rest))
     starts.sort(key=lambda start: cost([*start[0], *([_smallest(start[1])] if len(start[1]) else [])]))
     ways = [[*found, *row] for found, rest in starts[:BEST] for row in _rows(rest)]
+    if parts:
+        ways += [[*starts[0][0], *cut] for cut in _cuts(starts[0][1], parts)]
+        each /= parts
     return min(ways, key=cost)
+
+
+def _cuts(corners: np.ndarray, parts: int) -> Iterator[list[Shape]]:
+    """Shapes about two and more parts of all triangles: always the cut that saves most volume is made next.
+
+    One that saves nothing too: the cut after it may.
+    """
+    if len(corners) == 0:
+        return
+    whole = _smallest(corners)
+    held = [(whole, corners, _halves(whole, corners))]
+    while len(held) < parts:
+        k = max(range(len(held)), key=lambda i: held[i][2][0])
+        _, halves = held.pop(k)[2]
+        if not halves:
+            return
+        held += [(shape, part, _halves(shape, part)) for shape, part in halves]
+        yield [shape for shape, _, _ in held]
+
+
+def _halves(shape: Shape, corners: np.ndarray) -> tuple[float, list[tuple[Shape, np.ndarray]]]:
+    """The most of a shape's volume that a cut across an axis saves [m³], and both halves with their shapes."""
+    best, middles = (-math.inf, []), corners.mean(axis=1)
+    for t in middles.T:
+        for cut in np.linspace(t.min(), t.max(), SPLITS + 2)[1:-1]:
+            low = t < cut
+            if low.any() and not low.all():
+                halves = [(_smallest(part), part) for part in (corners[low], corners[~low])]
+                gain = shape.volume - sum(half.volume for half, _ in halves)
+                best = max(best, (gain, halves), key=lambda found: found[0])
+    return best
 
 
 def _housings(corners: np.ndarray, point: np.ndarray, direction: np.ndarray) -> list[Shape]:

@@ -24,6 +24,7 @@ from wsrender.robots import library
 
 CONFIGURATIONS = 400  # by which pairs that the fit brought to touch are found
 NO_MASS = "1e-12"  # of links whose mass no source gives [kg, kg m²]
+OFTEN, SELDOM = 1 / 3, 0.05  # of them: shapes that touch so often while hulls of their meshes touch so seldom
 ALWAYS = 0.9  # of them: links that touch so often do at their joint
 
 
@@ -213,7 +214,7 @@ def _words(values, digits: int = 9) -> str:
     return " ".join(f"{round(float(value), 16) + 0.0:.{digits}g}" for value in values)
 
 
-def fit_shapes(links: list[Link]) -> None:
+def fit_shapes(links: list[Link], parts: int = 0) -> None:
     """Fit every link's shapes to its collision meshes, about its own joint's axis and the next one's."""
     for link, after in zip(links, [*links[1:], None], strict=True):
         if link.meshes:
@@ -221,7 +222,7 @@ def fit_shapes(links: list[Link]) -> None:
             axes = [(np.zeros(3), _axis(link.joint))] if link.joint is not None else []
             if after is not None:
                 axes.append((after.T_parent[:3, 3], after.T_parent[:3, :3] @ _axis(after.joint)))
-            link.shapes = fit(whole, axes)
+            link.shapes = fit(whole, axes, parts)
             link.excess = excess(whole, link.shapes)
 
 
@@ -248,24 +249,27 @@ def text_of(root: Element) -> str:
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def write(name: str, links: list[Link], T_tip: np.ndarray, description: str, source: str, hulls: Path):
-    """Write a robot's model; what touches by the fit alone, two links with one between them, is excluded.
+def write(
+    name: str, links: list[Link], T_tip: np.ndarray, description: str, source: str, hulls: Path, parts: int = 0
+) -> dict[tuple[str, str], tuple[float, float]]:
+    """Write a robot's model; two links that touch by the fit alone, with one between them, are excluded.
 
-    Such a pair's meshes never touch in random configurations, or nearly always, as their housings overlap. Returns the
-    excluded pairs. ``hulls``: a folder for the meshes meanwhile.
+    Hulls of such a pair's meshes hardly ever touch in random configurations, and its shapes do in many; or its shapes
+    nearly always do, as their housings overlap. Returns the excluded pairs, with the shares of configurations in which
+    shapes and hulls touch. ``hulls``: a folder for the meshes meanwhile; ``parts``: see `fit`.
     """
-    fit_shapes(links)
+    fit_shapes(links, parts)
     order = ["base", *(link.name for link in links[1:])]
     fitted, _ = touching(text_of(mjcf(name, links, T_tip, description, source)))
     real, _ = touching(text_of(mjcf(name, links, T_tip, description, source, hulls=hulls)))
-    exclude = [
-        pair
-        for pair, share in sorted(fitted.items(), key=lambda item: [order.index(one) for one in item[0]])
-        if share > ALWAYS or (real.get(pair, 0) == 0 and order.index(pair[1]) - order.index(pair[0]) == 2)
-    ]
+    exclude = {}
+    for pair, share in sorted(fitted.items(), key=lambda item: [order.index(one) for one in item[0]]):
+        seldom = real.get(pair, 0) == 0 or (real[pair] < SELDOM and share > OFTEN)
+        if share > ALWAYS or (seldom and order.index(pair[1]) - order.index(pair[0]) == 2):
+            exclude[pair] = share, real.get(pair, 0.0)
     folder = library.find("ur5e").parent.parent / name
     folder.mkdir(exist_ok=True)
-    text = text_of(mjcf(name, links, T_tip, description, source, exclude))
+    text = text_of(mjcf(name, links, T_tip, description, source, list(exclude)))
     (folder / f"{name}.xml").write_text(text, encoding="utf-8")
     return exclude
 
@@ -281,9 +285,10 @@ def main() -> None:
     parser.add_argument("--description", default="")
     parser.add_argument("--source", default="")
     parser.add_argument("--hulls", type=Path, required=True, help="a folder for convex hulls")
+    parser.add_argument("--parts", type=int, default=0, help="into how many a link that is not convex may be cut")
     given = parser.parse_args()
     links, T_tip = links_of(given.urdf, given.base, given.tip, given.bodies)
-    exclude = write(given.name, links, T_tip, given.description, given.source, given.hulls)
+    exclude = write(given.name, links, T_tip, given.description, given.source, given.hulls, given.parts)
     for link in links:
         print(f"{link.name}: {len(link.shapes)} shapes, at most {1000 * link.excess:.0f} mm beyond the mesh")
     print(f"excluded: {exclude}")

@@ -28,11 +28,12 @@ MESHES = {
 }
 
 
+@pytest.mark.parametrize("parts", [0, 4])
 @pytest.mark.parametrize("name", MESHES)
-def test_shapes_contain_the_mesh_and_exceed_it_by_the_bound(name):
+def test_shapes_contain_the_mesh_and_exceed_it_by_the_bound(name, parts):
     """Containment by points anywhere on the surface; the bound by other points than those that it is found by."""
     mesh = MESHES[name]
-    shapes = fit(mesh, [(np.zeros(3), np.array([0.0, 1.0, 0.0]))])
+    shapes = fit(mesh, [(np.zeros(3), np.array([0.0, 1.0, 0.0]))], parts)
     points = trimesh.sample.sample_surface(mesh, 20_000, seed=7)[0]
     assert np.max([shape.depth(points) for shape in shapes], axis=0).min() >= 0
     bound, near = excess(mesh, shapes), cKDTree(trimesh.sample.sample_surface(mesh, 100_000, seed=9)[0])
@@ -48,6 +49,13 @@ def test_a_housing_and_a_tube_are_two_cylinders():
     assert (small.kind, large.kind) == ("cylinder", "cylinder")
     assert small.size[0] == pytest.approx(0.04, abs=0.001) and large.size[0] == pytest.approx(0.07, abs=0.006)
     assert excess(elbow(), shapes) < 0.03
+
+
+def test_a_body_that_is_not_convex_is_cut_into_parts():
+    """Three bars along three axes, of which slabs across one axis part only one from the others."""
+    bars = [trimesh.creation.box(bounds=[[0, 0, 0], 0.1 + 0.5 * np.eye(3)[k]]) for k in range(3)]
+    slabs, cut = (sum(shape.volume for shape in fit(trimesh.util.concatenate(bars), parts=parts)) for parts in (0, 4))
+    assert cut < 0.8 * slabs
 
 
 def test_what_is_written_is_what_is_measured():
