@@ -127,7 +127,13 @@ def print_steps() -> None:
 
     whole = run.plan(shared(SAMPLES, 0))
     run.run_shard(whole.over(0, SHARD >> 5), 0, threads=1)  # kernels are loaded
-    divided, planning = timed(lambda: run.plan(shared(SAMPLES, 0)).settled_as(whole.division(SHARD, 256)))
+
+    def planned() -> run.Plan:
+        plan = run.plan(shared(SAMPLES, 0))
+        _ = plan.estimate  # which a server tells before the job runs
+        return plan.settled_as(plan.division(SHARD, 256))
+
+    divided, planning = timed(planned)
     swept = [timed(lambda k=k: run.run_shard(divided, k, threads=1)) for k in range(len(divided.shards))]
     partials, shards = zip(*swept, strict=True)
 

@@ -7,7 +7,14 @@ import pytest
 
 from wsrender import run
 from wsrender.errors import DocumentError, InputError, ResourceError
-from wsrender.volume.lattice import LatticeBlock, block_of_all, check_voxels, expected_voxels
+from wsrender.volume.lattice import (
+    LatticeBlock,
+    block_of_all,
+    check_voxels,
+    expected_voxels,
+    measured,
+    voxel_size_of,
+)
 from wsrender.volume.voxels import Voxels
 
 SAMPLING = {"method": "sobol", "count": 256}
@@ -125,6 +132,22 @@ def test_expected_voxels_are_those_of_the_volume_at_every_size():
     assert expected_voxels(points, 0.005) == pytest.approx(8 * expected_voxels(points, 0.01))
     flat = points * [1.0, 1.0, 0.0]
     assert expected_voxels(flat, 0.001) == pytest.approx(np.pi * 0.25 / 1e-6, rel=0.1)
+
+
+@pytest.mark.parametrize("dimension", range(4))
+def test_expected_voxels_are_counted_with_half_of_those_at_the_boundary(dimension):
+    """As a walk over all voxels and their neighbours counts them, of sets that lie anywhere, turned in any way."""
+    rng = np.random.default_rng(dimension)
+    for count in (1, 7, 300, 5000):
+        shape = rng.normal(size=(3, 3)) * (np.arange(3) < dimension)[:, None]
+        points = rng.normal(size=(count, 3)) @ shape + 100 * rng.normal(size=3)
+        spans, *_ = hull = measured(points)
+        size = voxel_size_of(hull, count)
+        voxels = {tuple(cell) for cell in np.floor(points / size).astype(int).tolist()}
+        steps = [sign * step for step in np.eye(3, dtype=int) for sign in (1, -1)]
+        inside = sum(sum(tuple(voxel + step) in voxels for step in steps) >= 2 * spans for voxel in voxels)
+        expected = max((inside + len(voxels)) / 2 * (size / 0.01) ** spans, 1.0)
+        assert expected_voxels(points, 0.01) == expected_voxels(points, 0.01, hull) == pytest.approx(expected)
 
 
 def test_capability_counts_voxels_times_directions_however_many():

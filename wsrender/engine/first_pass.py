@@ -44,7 +44,7 @@ class FirstPass:
         return Pipeline(replace(self.evaluation, given=nothing), plan_sampling(self.evaluation.chain, sampling))
 
     @cached_property
-    def _hull(self) -> tuple[int, float, float]:
+    def hull(self) -> tuple[int, float, float]:
         """Dimension, measure and extent of the positions."""
         return measured(self.evaluated.position)
 
@@ -55,13 +55,13 @@ class FirstPass:
         joint makes, in the median over configurations.
         """
         if sampling is None:
-            return voxel_size_of(self._hull, divisions=divisions)
+            return voxel_size_of(self.hull, divisions=divisions)
         if sampling.method != "grid":
-            return voxel_size_of(self._hull, sampling.count, divisions=divisions)
+            return voxel_size_of(self.hull, sampling.count, divisions=divisions)
         steps = self._steps(sampling)
         moving = steps.max(axis=0) > FLAT * np.ptp(self.evaluated.position, axis=0).max()
         distinct = np.prod(sampling.levels[moving], dtype=float)
-        return voxel_size_of(self._hull, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
+        return voxel_size_of(self.hull, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
 
     def least_voxel_size(self, sampling: SamplingPlan | None) -> float:
         """The voxel edge [m] below which the samples of a plan leave holes; 0 for as many as it takes."""

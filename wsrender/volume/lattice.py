@@ -161,20 +161,21 @@ def voxel_size_of(
     return rounded_up(edge, 2) if edge else 0.0
 
 
-def expected_voxels(positions: np.ndarray, voxel_size_m: float) -> float:
+def expected_voxels(positions: np.ndarray, voxel_size_m: float, hull: tuple[int, float, float] | None = None) -> float:
     """How many voxels a workspace has of which samples (N, 3) [m] are known, however small the voxels are.
 
     The volume (area, length) is measured with voxels so large that the samples leave next to no holes: half of those
-    at its boundary belong to it. Its share per voxel is the answer, at least 1.
+    at its boundary belong to it. Its share per voxel is the answer, at least 1. ``hull``: the positions, `measured`.
     """
-    dimension, _, _ = measured(positions)
-    size = default_voxel_size(positions, len(positions))
+    hull = hull or measured(positions)
+    size = voxel_size_of(hull, len(positions))
     cells = np.floor(positions / size).astype(np.int64)
-    held = set(map(tuple, cells.tolist()))
-    beside = [tuple(step) for step in np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])]
-    around = [sum((x + i, y + j, z + k) in held for i, j, k in beside) for x, y, z in held]
-    inner = sum(number >= 2 * dimension for number in around)
-    return max((inner + len(held)) / 2 * (size / voxel_size_m) ** dimension, 1.0)
+    cells -= cells.min(axis=0) - 1
+    strides = np.cumprod([1, *(cells.max(axis=0) + 2)[:2]])
+    held = np.unique(cells @ strides)
+    around = np.isin(held + np.concatenate([strides, -strides])[:, None], held).sum(axis=0)
+    inner = int((around >= 2 * hull[0]).sum())
+    return max((inner + len(held)) / 2 * (size / voxel_size_m) ** hull[0], 1.0)
 
 
 def measured(positions: np.ndarray) -> tuple[int, float, float]:

@@ -248,7 +248,8 @@ class WorkspaceAnalysis(Analysis):
         """Voxels that hold a sample, and those of the block around them, from the coarse samples' positions."""
         positions, size = self.first_pass.evaluated.position, self.voxel_size_m
         cells = np.floor(positions / size)
-        return expected_voxels(positions, size), float(np.prod(np.ptp(cells, axis=0) + 1))
+        block = float(np.prod(np.ptp(cells, axis=0) + 1))
+        return expected_voxels(positions, size, self.first_pass.hull), block
 
     @property
     def _held(self) -> float:

@@ -64,22 +64,26 @@ class DepthBuffer:
         n = OVERSAMPLING
         height, width = (edge // n for edge in self.nearest.shape)
         parts = self.nearest.reshape(height, n, width, n).transpose(1, 3, 0, 2).reshape(n * n, -1)
+        covered = np.flatnonzero((parts >= 0).any(axis=0))
+        parts, down, across = parts[:, covered], *np.divmod(covered, width)
         # Colours grow evenly: where a pixel has one triangle, their mean is that in the middle.
         whole = (parts == parts[0]).all(axis=0)
         looked = [(np.where(whole, -1, part), k // n + 0.5, k % n + 0.5, 1) for k, part in enumerate(parts)]
-        flat = np.zeros((height * width, 4), np.float32)
+        flat = np.zeros((len(covered), 4), np.float32)
         for part, below, beside, times in (*looked, (np.where(whole, parts[0], -1), n / 2, n / 2, n * n)):
             seen = np.flatnonzero(part >= 0)
-            triangle, row, column = part[seen], seen // width, seen % width
+            triangle = part[seen]
             start = self.start[triangle]
-            place = np.stack([n * column + beside - start[:, 0], n * row + below - start[:, 1]])
+            place = np.stack([n * across[seen] + beside - start[:, 0], n * down[seen] + below - start[:, 1]])
             x, y = place.astype(np.float32)[..., None]
-            first, right, down = (plane[triangle] for plane in planes)
-            flat[seen, :3] += times * (first + x * right + y * down)
+            first, right, under = (plane[triangle] for plane in planes)
+            flat[seen, :3] += times * (first + x * right + y * under)
             flat[seen, 3] += times
-        flat[:, :3] /= np.maximum(flat[:, 3:], 1)
+        flat[:, :3] /= flat[:, 3:]
         flat[:, 3] *= alpha / n**2
-        return flat.reshape(height, width, 4).clip(0, 1)
+        image = np.zeros((height * width, 4), np.float32)
+        image[covered] = flat.clip(0, 1)
+        return image.reshape(height, width, 4)
 
     def _fill(self, rows: np.ndarray, low: np.ndarray, high: np.ndarray, near: np.ndarray) -> None:
         """Write triangles ``rows`` that are seen from row ``low`` (R,) of the picture to before ``high``.
