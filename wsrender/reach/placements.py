@@ -16,6 +16,8 @@ import numpy as np
 
 from wsrender.engine import evaluate_samples, placed_slacks
 from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -37,16 +39,19 @@ class PlacedAdmission(Admission):
     """What constraints say of configurations that reach targets from bases that stand at ``values`` (N, m) of joints.
 
     ``moved``: constraints of the chain ``on_base``, whose coordinates those of the base lead; they are asked first.
+    ``added``: those of users, which see where the ``base`` stands; NumPy evaluates them, last.
     """
 
     moved: Sequence[Constraint] = ()
     on_base: Chain | None = None
+    added: Sequence[ExpressionConstraint | HostConstraint] = ()
+    base: MovingBase | None = None
     values: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Those of all constraints, in the order in which they are asked."""
-        return tuple(each.name for each in (*self.moved, *self.constraints))
+        return tuple(each.name for each in (*self.moved, *self.constraints, *self.added))
 
     def among(self, batch: slice | np.ndarray) -> Self:
         """The same for a batch of targets."""
@@ -68,7 +73,19 @@ class PlacedAdmission(Admission):
         if self.constraints and len(left):
             own = super().rejected(q[left])
             found[left] = np.where(own > 0, own + len(self.moved), 0)
+        left = np.flatnonzero(found == 0)
+        if self.added and len(left):
+            moved = self.motions(targets[left])
+            poses = moved @ self.chain.poses(q[left])
+            for number, each in enumerate(self.added, len(self.moved) + len(self.constraints) + 1):
+                rejects = each.host(q[left], poses, moved) > 0
+                found[left[rejects & (found[left] == 0)]] = number
         return found
+
+    def motions(self, targets: np.ndarray) -> np.ndarray:
+        """The motions of the world (N, 4, 4) that bring the chain to the bases of ``targets`` (N,)."""
+        assert self.base
+        return self.base.poses(self.values[targets]) @ np.linalg.inv(self.chain.T_world_base)
 
     def samples(self, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
         """Those that no base that stands somewhere rejects, as `Admission.samples`."""

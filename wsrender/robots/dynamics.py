@@ -6,7 +6,11 @@ from wsrender.robots.chain import Chain
 
 
 def gravity_torques(chain: Chain, q: np.ndarray, gravity: np.ndarray) -> np.ndarray:
-    """Torques and forces (N, n) [N m or N] that hold the arm at ``q`` (N, n) in ``gravity`` (3,) [m/s²], world axes."""
+    """Torques and forces (N, n) [N m or N] that hold the arm at ``q`` (N, n).
+
+    In ``gravity`` [m/s²] along world axes, (3,), or (N, 3) of each.
+    """
+    gravity = gravity[..., None, :]
     T = chain.frames(q)[:, :-1]
     axes, origins, centers = T[..., :3, 2], T[..., :3, 3], _centers(chain, T)
     beyond = np.cumsum(chain.mass[::-1])[::-1]

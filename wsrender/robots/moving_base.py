@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from wsrender.documents.placements import IN_DEGREES, placed
 from wsrender.robots.chain import Chain
 from wsrender.robots.small_matrices import product
 
@@ -55,6 +56,12 @@ class MovingBase:
     def configurations(self, coordinates: np.ndarray) -> np.ndarray:
         """Values of the joints (N, m) at coordinates (N, 6) [m and rad]."""
         return (coordinates - self._middle)[:, self.varying]
+
+    def poses(self, values: np.ndarray) -> np.ndarray:
+        """Poses (N, 4, 4) of the arm's base in the world at values (N, m) of the joints."""
+        coordinates = np.tile(self._middle, (len(values), 1))
+        coordinates[:, self.varying] += values
+        return placed(coordinates / IN_DEGREES) @ self.T_frame_base
 
     def carrying(self, chain: Chain) -> Chain:
         """The chain with the joints of the base before its own, whose values come first."""

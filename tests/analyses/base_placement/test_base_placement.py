@@ -14,7 +14,6 @@ from wsrender.analyses.base_placement.result import PlacementMap
 from wsrender.analyses.jobs import parse_job
 from wsrender.documents.constraints import Apart
 from wsrender.documents.placements import COORDINATES, mounted, placed
-from wsrender.pipeline.constraints import registry
 from wsrender.robot.collisions import _kept_apart
 from wsrender.robot.constraints import constraints_for
 from wsrender.run import execute, plan, run_shard
@@ -365,13 +364,6 @@ def test_indices_that_cannot_be_asked_are_refused(index, options, message):
     robot = {"library": "ur5e", "velocity_limits": {}} if index == "velocity_radius" else "ur5e"
     with pytest.raises(ws.InputError, match=message):
         plan(job(robot, RING, over=TURNED, index=index, index_options={index: options} if options else {}))
-
-
-def test_a_constraint_of_ones_own_is_refused(monkeypatch):
-    monkeypatch.setattr(registry, "_ADDED", {})
-    ws.register_constraint("own_reach", lambda q, position, axes: position[0])
-    with pytest.raises(ws.InputError, match=r"constraints\.own_reach: is not available here"):
-        plan(job("ur5e", RING, over={}, constraints={"own_reach": True}))
 
 
 def test_coordinates_stand_in_the_document():

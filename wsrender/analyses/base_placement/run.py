@@ -35,6 +35,8 @@ from wsrender.documents.placements import ANGLES, IN_DEGREES, mounted, placed
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.reach.admissible_search import BLOCKED
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of, solved_bytes
@@ -64,7 +66,7 @@ TRIED, TOLERANCE_S = 20_000, 2.0  # placements around the best one, and seconds 
 TURNS_ALIKE = 1e-9  # sine, and distance in reaches, of an axis from the base's
 DRAWN = 3
 PICTURES = ("placements", "robot")
-Both = tuple[tuple[Constraint, ...], tuple[Constraint, ...]]
+Asked = tuple[tuple[Constraint, ...], tuple[Constraint, ...], tuple[ExpressionConstraint | HostConstraint, ...]]
 
 
 class BasePlacementAnalysis(Analysis):
@@ -128,27 +130,27 @@ class BasePlacementAnalysis(Analysis):
         return self.robot.placed(where)
 
     @cached_property
-    def constraints(self) -> Both:
-        """Constraints that see where the base stands, of a chain that begins with its joints, and the others.
+    def constraints(self) -> Asked:
+        """Constraints that see where the base stands, of a chain that begins with its joints, others, and users' own.
 
         Raises InputError.
         """
         return self._constraints(self.base)
 
-    def _constraints(self, base: MovingBase) -> Both:
+    def _constraints(self, base: MovingBase) -> Asked:
         choice, gravity = self.job.constraints or Constraints.model_construct(), gravity_of(self.job)
-        if choice.added:
-            name = next(iter(choice.added))
-            raise InputError(f"constraints.{name}", "is not available here: it may depend on where the base stands")
         if self.robot.chain.geometry is None and any(getattr(choice, name) for name in OF_THE_WORLD):
             raise InputError("constraints", "are not available for a robot that is defined by a class: its base moves")
         given = {name: getattr(choice, name) for name in choice.model_fields_set}
         world = {name: value for name, value in given.items() if name in OF_THE_WORLD}
-        own = {name: value for name, value in given.items() if name not in OF_THE_WORLD}
+        added = choice.model_extra or {}
+        own = {name: value for name, value in given.items() if name not in (*OF_THE_WORLD, *added)}
         seen, around = Constraints.model_construct(**world), self.job.environment
+        users = constraints_for(self.standing, Constraints.model_construct(**added), gravity=gravity)
         return (
             constraints_for(self.standing, seen, around, gravity=gravity, base=base),
             constraints_for(self.standing, Constraints.model_construct(**own), gravity=gravity),
+            tuple(each for each in users if isinstance(each, ExpressionConstraint | HostConstraint)),
         )
 
     @cached_property
@@ -190,7 +192,9 @@ class BasePlacementAnalysis(Analysis):
     @property
     def _blind(self) -> bool:
         """Whether constraints do not see how the base is turned about the world's z."""
-        moved, own = self.constraints
+        moved, own, added = self.constraints
+        if added:
+            return False
         turned = len(self.base.varying) - 1  # the joint that carries the base
         around = [each for each in moved if isinstance(each, CollisionConstraint)]
         carried = any(each.solids[k].joint == turned for each in around for k in each.pairs.ravel())
@@ -321,7 +325,7 @@ class BasePlacementAnalysis(Analysis):
         middle = np.array([*T[:3, 3], 0.0, 0.0, 0.0])
         T[:3, 3] = 0.0
         base = MovingBase(middle - ends, middle + ends, T)
-        admission = self._admission(base, self._constraints(base) if self._constrained else ((), ()), threads)
+        admission = self._admission(base, self._constraints(base) if self._constrained else ((), (), ()), threads)
         return self._deciding(self._kinds_of(self.targets.part(served)), base, admission, threads)
 
     def _deciding(
@@ -349,13 +353,13 @@ class BasePlacementAnalysis(Analysis):
             threads=threads,
         )
 
-    def _admission(self, base: MovingBase, constraints: Both, threads: int | None) -> PlacedAdmission | None:
-        moved, own = constraints
-        if not (moved or own):
+    def _admission(self, base: MovingBase, constraints: Asked, threads: int | None) -> PlacedAdmission | None:
+        moved, own, added = constraints
+        if not (moved or own or added):
             return None
         chain = self.standing.chain
         on_base = base.carrying(chain.geometry) if chain.geometry else None
-        return PlacedAdmission(chain, own, self.device, threads, moved, on_base)
+        return PlacedAdmission(chain, own, self.device, threads, moved, on_base, added, base)
 
     def _decided(self, search: PlacementsOfKinds, numbers: np.ndarray) -> Decided:
         coordinates, shape = self.job.over.coordinates(numbers), (len(numbers), len(self.targets))

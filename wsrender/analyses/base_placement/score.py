@@ -14,6 +14,7 @@ from wsrender.engine import evaluate_samples, units_of
 from wsrender.errors import InputError
 from wsrender.indices.entry import BASE_JOINT
 from wsrender.indices.index_catalogue import find
+from wsrender.pipeline.constraints.expression import ExpressionIndex
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -31,6 +32,7 @@ class Score:
     name: str
     evaluation: Evaluation
     clearance: Clearance | None
+    base: MovingBase
     device: str = "cpu"
     threads: int | None = None
 
@@ -56,7 +58,7 @@ class Score:
 
             clearance = clearance_of(robot, job.constraints, job.environment, base)
         _refuse_turned(job, name, evaluation)
-        return cls(name, evaluation, clearance)
+        return cls(name, evaluation, clearance, base)
 
     @property
     def sign(self) -> float:
@@ -79,7 +81,11 @@ class Score:
             options = self.evaluation.options[self.name]
             least = self.clearance.least if self.name == "clearance" else self.clearance.lower_bound
             return least(np.hstack([base_values, q]), **options)
-        plan = plan_sampling(self.evaluation.chain, q)
+        chain, of_users = self.evaluation.chain, self.evaluation.of_chain.get(self.name)
+        if isinstance(of_users, ExpressionIndex):  # it may see where the base stands
+            moved = self.base.poses(base_values) @ np.linalg.inv(chain.T_world_base)
+            return self.sign * of_users.values(q, moved @ chain.poses(q), moved)
+        plan = plan_sampling(chain, q)
         pipeline = Pipeline(self.evaluation, plan, kept_rows=frozenset())
         return self.sign * evaluate_samples(pipeline, self.device, threads=self.threads).values[0]
 
@@ -92,12 +98,12 @@ def _found(name: str) -> Any:
 
 
 def _refuse_turned(job: BasePlacementJob, index: str, evaluation: Evaluation) -> None:
+    if isinstance(evaluation.of_chain.get(index), ExpressionIndex):
+        return
     turned = [name for name in ANGLES if name in job.over.ranges]
     options = evaluation.options.get(index, {})
     if turned and options.get("direction"):
         field = f"index_options.{index}.direction"
         raise InputError(field, f"must not be given where over.{turned[0]} is a range: the base turns")
-    if "gravity" in (needs := find(index).needs) and (name := job.turns_gravity):
+    if "gravity" in find(index).needs and (name := job.turns_gravity):
         raise InputError("index", f"must not be {index} where over.{name} is a range: gravity would turn")
-    if "frames" in needs and job.over.ranges:
-        raise InputError("index", f"must not be {index}: frames in the world move with the base")

@@ -50,27 +50,37 @@ class ExpressionConstraint:
         most = np.full(self.chain.n, np.inf) if efforts is None else efforts
         return JointLimits(self.chain.lower_limits, self.chain.upper_limits, most)
 
-    def values(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
-        """The function at configurations (N, n) with tip poses (N, 4, 4), (N,); NumPy evaluates it itself."""
-        asked = {name: self._asked(name, q) for name in self.asks}
+    def values(self, q: np.ndarray, frames: np.ndarray, moved: np.ndarray | None = None) -> np.ndarray:
+        """The function at configurations (N, n) with tip poses (N, 4, 4), (N,); NumPy evaluates it itself.
+
+        ``moved`` (N, 4, 4): by what motion of the world the arm stands elsewhere at each, as the tip poses say already.
+        """
+        asked = {name: self._asked(name, q, moved) for name in self.asks}
         found = self.function(list(q.T), *_pose(frames), **asked, **dict(self.options))
         return np.broadcast_to(np.asarray(found, np.float64), len(q))
 
-    def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
-        """See `Constraint.host`; NumPy evaluates the function itself."""
-        return np.where(self.values(q, frames) >= 0, 0, 1).astype(np.int8)
+    def host(self, q: np.ndarray, frames: np.ndarray, moved: np.ndarray | None = None) -> np.ndarray:
+        """See `Constraint.host` and `values`."""
+        return np.where(self.values(q, frames, moved) >= 0, 0, 1).astype(np.int8)
 
-    def _asked(self, name: str, q: np.ndarray) -> Any:
+    def _asked(self, name: str, q: np.ndarray, moved: np.ndarray | None) -> Any:
         assert self.chain is not None
         if name == "frames":
-            return [Frame(*_pose(T)) for T in self.chain.frames(q)[:, :-1].swapaxes(0, 1)]
+            frames = self.chain.frames(q)[:, :-1]
+            frames = frames if moved is None else moved[:, None] @ frames
+            return [Frame(*_pose(T)) for T in frames.swapaxes(0, 1)]
         if name == "limits":
             return self.limits
-        if name == "g":
-            return list(gravity_torques(self.chain, q, np.array(self.gravity)).T)
+        if name == "g":  # turned with the arm, gravity pulls along other axes of it
+            gravity = np.array(self.gravity)
+            gravity = gravity if moved is None else gravity @ moved[:, :3, :3]
+            return list(gravity_torques(self.chain, q, gravity).T)
         if name == "M":
             return inertia_matrices(self.chain, q).transpose(1, 2, 0)
-        return self.chain.jacobians(q).transpose(1, 2, 0)
+        J = self.chain.jacobians(q)
+        if moved is not None:
+            J = (moved[:, None, :3, :3] @ J.reshape(len(q), 2, 3, -1)).reshape(J.shape)
+        return J.transpose(1, 2, 0)
 
 
 def _pose(T: np.ndarray) -> tuple[list[Any], list[Any]]:

@@ -29,8 +29,11 @@ class HostConstraint:
         """No numbers: samples are labelled before the sweep."""
         return np.zeros(0)
 
-    def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
-        """See `Constraint.host`. Raises InputError where the function raises, or answers anything but (N,) bool."""
+    def host(self, q: np.ndarray, frames: np.ndarray, moved: np.ndarray | None = None) -> np.ndarray:
+        """See `Constraint.host`; tip poses say all of where an arm stands.
+
+        Raises InputError where the function raises, or answers anything but (N,) bool.
+        """
         try:
             admitted = np.asarray(self.function(q, frames, **dict(self.options)))
         except Exception as error:
