@@ -9,7 +9,6 @@ from typing import Any
 
 from fastapi import Depends, FastAPI
 from fastapi.openapi.docs import get_swagger_ui_html
-from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.convertors import StringConvertor, register_url_convertor
@@ -18,15 +17,14 @@ from starlette.routing import compile_path
 from starlette.staticfiles import StaticFiles
 
 from wsrender import __version__
-from wsrender.results.view.manifest import MANIFEST
 from wsrender_server.auth import Authenticator, check_binding
 from wsrender_server.connections import BodyLayer
 from wsrender_server.hosts import HostLayer, address
-from wsrender_server.job_body import body_schemas
 from wsrender_server.jobs.service import JobService
 from wsrender_server.logs import configure_logs
+from wsrender_server.openapi import openapi_document
 from wsrender_server.parts import Jobs, Parts
-from wsrender_server.problems import Problem, answer_errors
+from wsrender_server.problems import answer_errors
 from wsrender_server.query import known_parameters
 from wsrender_server.requests import RequestLayer
 from wsrender_server.settings import Settings
@@ -74,7 +72,6 @@ from wsrender_server.routes import (  # noqa: E402
 )
 from wsrender_server.routes import jobs as job_routes  # noqa: E402
 
-KEY_PATHS = {route.path_format for route in keys.router.routes if isinstance(route, APIRoute)}
 ROUTERS = [
     module.router
     for module in (
@@ -127,7 +124,7 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
     app.add_middleware(BodyLayer, timeout_s=settings.read_timeout_s)
     app.add_middleware(HostLayer, settings=settings)
     app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
-    document = cache(lambda keys_needed: _openapi(app, keys_needed))
+    document = cache(lambda keys_needed: openapi_document(app, keys_needed))
     app.openapi = lambda: document(authenticator.required)
     return app
 
@@ -185,35 +182,3 @@ class _ViewerFiles(StaticFiles):
         response = super().file_response(*arguments, **options)
         response.headers.update(VIEWER_HEADERS)
         return response
-
-
-def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
-    """The OpenAPI document; without keys nothing in it asks for one, or manages them."""
-    document = get_openapi(
-        title=app.title,
-        version=app.version,
-        description=app.description,
-        license_info=app.license_info,
-        routes=app.routes,
-        openapi_version=app.openapi_version,
-    )
-    schemas = document["components"]["schemas"]
-    schemas |= body_schemas()
-    schemas |= _view_schemas()
-    schemas["Problem"] = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas |= schemas["Problem"].pop("$defs", {})
-    for unused in ("HTTPValidationError", "ValidationError"):
-        schemas.pop(unused, None)
-    if not keys_needed:
-        document["components"].pop("securitySchemes", None)
-        document["paths"] = {path: methods for path, methods in document["paths"].items() if path not in KEY_PATHS}
-        for operation in (operation for path in document["paths"].values() for operation in path.values()):
-            operation.pop("security", None)
-    return document
-
-
-def _view_schemas() -> dict[str, Any]:
-    """The manifest of a view."""
-    found = MANIFEST.json_schema(ref_template="#/components/schemas/View{model}")
-    parts = {f"View{name}": part for name, part in found.pop("$defs").items()}
-    return {**parts, "Manifest": found}

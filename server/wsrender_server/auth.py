@@ -10,7 +10,7 @@ from time import monotonic
 from typing import Annotated, Literal, Never
 
 from fastapi import Depends, Request, Security
-from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
+from fastapi.security import HTTPAuthorizationCredentials, HTTPBasic, HTTPBasicCredentials, HTTPBearer
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
@@ -137,9 +137,11 @@ def needs(right: Scope) -> Callable[..., Awaitable[Principal]]:
     """The dependency of a route that needs a right."""
 
     async def principal(
-        request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)]
+        request: Request,
+        bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
+        basic: Annotated[HTTPBasicCredentials | None, Security(_basic)],
     ) -> Principal:
-        secret = credentials and credentials.credentials
+        secret = basic.password if basic else bearer and bearer.credentials
         if request.app.state.authenticator.asks_database:
             asking = await run_in_threadpool(entitled, request, secret, right)
         else:
@@ -177,6 +179,11 @@ def check_priority(principal: Principal, priority: int, pointer: str) -> None:
 
 
 _bearer = HTTPBearer(scheme_name="api_key", description="An API key (`wsrender keys create`).", auto_error=False)
+_basic = HTTPBasic(
+    scheme_name="api_key_as_password",
+    description="An API key as the password, for programs that know no other way; the name does not matter.",
+    auto_error=False,
+)
 Reader = Annotated[Principal, Depends(needs("read"))]
 Submitter = Annotated[Principal, Depends(needs("submit"))]
 Administrator = Annotated[Principal, Depends(needs("admin"))]
@@ -191,7 +198,9 @@ def _asking(connection: HTTPConnection, secret: str | None) -> Principal:
         raise _unauthorized("an API key is needed: Authorization: Bearer <key>", "Bearer")
     principal = authenticator.principal(secret)
     if principal is None:
-        raise _unauthorized("the API key is unknown or was revoked", 'Bearer error="invalid_token"')
+        scheme = connection.headers.get("authorization", "").partition(" ")[0].lower()
+        challenge = 'Basic realm="wsrender"' if scheme == "basic" else 'Bearer error="invalid_token"'
+        raise _unauthorized("the API key is unknown or was revoked", challenge)
     return principal
 
 

@@ -35,6 +35,14 @@ MOST_HELD, MOST_HELD_OF_OWNER = 4, 2  # longer bodies at a time: who sends slowl
 # Of a body: values weigh some 30 bytes each once they are read, lists and objects 100.
 MOST_VALUES, MOST_CONTAINERS = 8_000_000, 2_000_000
 ROBOT = "#/$defs/RobotSpec"
+# What a robot comes from, and the name of such an object.
+ROBOTS = {
+    "library": "LibraryRobot",
+    "dh": "DHRobot",
+    "mjcf": "MJCFRobot",
+    "urdf": "URDFRobot",
+    "model": "UploadedRobot",
+}
 # Lists that hold nothing twice, and what else their schema says.
 LISTS: dict[str, dict[str, int]] = {
     "indices": {"minItems": 1},
@@ -191,7 +199,8 @@ def body_schemas() -> dict[str, Any]:
     """Schemas for OpenAPI's components: every part of a job document, ``JobDocument`` and ``JobSubmission``.
 
     ``Edited`` is what the page shows before there is a job. They are stricter than ``wsrender schema`` where JSON
-    Schema can say what a server additionally refuses.
+    Schema can say what a server additionally refuses, and as generators of clients need them: a robot is one of several
+    named objects, and no object is a default (``x-default`` has it for those who show forms).
     """
     schema = copy.deepcopy(job_schema())
     parts: dict[str, Any] = schema.pop("$defs")
@@ -237,6 +246,8 @@ def body_schemas() -> dict[str, Any]:
         "examples": EXAMPLES,
     }
     parts["JobDocument"]["examples"] = EXAMPLES[:1]
+    _split_robot(parts)
+    _move_defaults(parts)
     return json.loads(json.dumps(parts).replace("#/$defs/", "#/components/schemas/"))
 
 
@@ -258,6 +269,32 @@ EXAMPLES = [
 ]
 
 
+def _split_robot(parts: dict[str, Any]) -> None:
+    """An object for each source of a robot; ``x-sources`` names, of their union, what each has alone."""
+    whole = parts["RobotSpec"]
+    del whole["oneOf"]
+    for source, name in ROBOTS.items():
+        others = ROBOTS.keys() - {source}
+        properties = {field: part for field, part in whole["properties"].items() if field not in others}
+        parts[name] = {**whole, "title": name, "properties": properties, "required": [source]}
+    described = {key: whole[key] for key in ("title", "description")}
+    parts["RobotSpec"] = {**described, "anyOf": [_ref(name) for name in ROBOTS.values()], "x-sources": [*ROBOTS]}
+
+
+def _move_defaults(node: Any) -> None:
+    """Let descriptions say the defaults that are objects."""
+    if isinstance(node, list):
+        for value in node:
+            _move_defaults(value)
+    elif isinstance(node, dict):
+        for value in node.values():
+            _move_defaults(value)
+        if isinstance(node.get("default"), dict):
+            node["x-default"] = default = node.pop("default")
+            if default:
+                node["description"] = f"{node.get('description', '')} Default: {json.dumps(default)}.".strip()
+
+
 def _one_of(tags: Mapping[str, str], description: str) -> dict[str, Any]:
     return {"title": "JobDocument", "description": description, "oneOf": [_ref(name) for name in tags.values()]}
 
@@ -274,7 +311,7 @@ def _tighten_robot(part: dict[str, Any]) -> None:
     for name in ("mjcf", "urdf", "model"):
         properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
     properties["dh"] = _ref("DHTable")
-    part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
+    part["oneOf"] = [{"required": [source]} for source in ROBOTS]
 
 
 def _tighten_scene(part: dict[str, Any]) -> None:

@@ -28,7 +28,7 @@ MOST_WAITING = 32
 MOST_WAITING_OF_OWNER = 16
 LOOK_S = 0.1
 TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes with the child
-PATIENCE_S = 5.0  # the first plan of a kind of robot compiles kernels
+PATIENCE_S = 50.0  # the first plan of a kind of robot compiles kernels; many proxies give up after 60
 TIMEOUT_S = 180.0
 MOST_KEPT = 64
 

@@ -30,16 +30,17 @@ from wsrender_server.routes.job_views import JobId, Page, View, WarningView, fou
 
 router = APIRouter(prefix="/v1", tags=["results"])
 
+NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 _ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
 _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": {"*/*": {}}},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": {}}},
+    200: {"description": "The file, answered with its own media type", "headers": _ETAG, "content": {RAW: _BINARY}},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": {RAW: _BINARY}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _RESULT_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {"description": "The document", "headers": _ETAG},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": {"application/json": {"schema": {}}}},
+    206: {"description": "The bytes of the range asked for", "headers": _ETAG, "content": {RAW: _BINARY}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")
@@ -49,7 +50,6 @@ _AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the p
 _SUFFIX = OneOf(lambda: formats.suffixes(formats.rows("picture")))
 Statistic = Literal["count", "maximum", "mean", "minimum"]
 RESULT = "result.json"
-NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
 
 
 class ArtifactView(View):

@@ -1,5 +1,6 @@
 """What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
 
+import codecs
 from datetime import datetime
 from functools import cache
 from typing import Annotated, Any
@@ -25,6 +26,12 @@ XML_TYPES = ("application/xml", "text/xml")
 ZIP_TYPE = "application/zip"
 MOST_NAMED, LONGEST_NAME = 100, 500  # of files that are missing
 FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values(), ZIP_TYPE]))
+ANY_TYPE = "application/octet-stream"  # what it is stands in its first bytes
+LOOKED_AT = 1024  # bytes
+EXAMPLE_MODEL = (
+    '<mujoco><worldbody><body><joint name="hinge" axis="0 0 1" range="-90 90"/><geom size="0.1"/>'
+    '<site name="tool" pos="0.5 0 0"/></body></worldbody></mujoco>'
+)
 
 router = APIRouter(prefix="/v1")
 
@@ -134,19 +141,26 @@ def list_robots(principal: Reader) -> Page[RobotView]:
 
 async def _uploaded_body(request: Request) -> tuple[str, bytes]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type not in XML_TYPES + FILE_TYPES:
-        allowed = ", ".join(("application/xml", *FILE_TYPES))
+    if media_type not in (ANY_TYPE, *XML_TYPES, *FILE_TYPES):
+        allowed = ", ".join((ANY_TYPE, "application/xml", *FILE_TYPES))
         raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
-    return media_type, await request.body()
+    body = await request.body()
+    return _type_of(body) if media_type == ANY_TYPE else media_type, body
 
 
+def _type_of(body: bytes) -> str:
+    """What a file that no header describes is, by its first bytes; of meshes and tables the jobs that name them see."""
+    if body.startswith(b"PK\x03\x04"):
+        return ZIP_TYPE
+    start = body[:LOOKED_AT].lstrip(codecs.BOM_UTF8).lstrip()
+    return XML_TYPES[0] if start.startswith((b"<", codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else ANY_TYPE
+
+
+# As a client knows it that is made from the description; that one type is enough, and can be meant by each file.
 _MODEL_BODY = {
     "requestBody": {
         "required": True,
-        "content": {
-            "application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"},
-            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in FILE_TYPES},
-        },
+        "content": {ANY_TYPE: {"example": EXAMPLE_MODEL}},
     }
 }
 
@@ -177,6 +191,10 @@ def upload_model(
     NPY file, for a `height_field`, or a table, CSV, Parquet or NPY: of targets, for `"targets": {"model": sha256}`, of
     joint values, for `"configurations": {"model": sha256}`, or of points, for `"left": {"model": sha256}`. Each is read
     by the jobs that name it; meshes of a model travel in a ZIP alone.
+
+    A header Content-Type of one of these says which it is: application/xml, application/zip, model/stl, model/obj,
+    model/ply, application/x-npy, text/csv or application/vnd.apache.parquet. As application/octet-stream the first
+    bytes say it.
     """
     media_type, text = body
     missing: list[str] = []

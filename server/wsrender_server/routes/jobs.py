@@ -18,14 +18,14 @@ from wsrender_server.admission import Admitted
 from wsrender_server.auth import Principal, Reader, Submitter, check_priority
 from wsrender_server.hosts import address
 from wsrender_server.job_body import job_body
-from wsrender_server.jobs.records import ENDED, JobState, Submission
+from wsrender_server.jobs.records import ENDED, JobRecord, JobState, Submission
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
 
 LONGEST_WAIT_S = 60.0
-ANSWER_WITHIN_S = 8.0  # many clients and proxies give up after ten
 POLL_AGAIN_S = "1"
+LONGEST_KEY = 255  # characters
 
 router = APIRouter(prefix="/v1", tags=["jobs"])
 _Body = Annotated[bytes, Depends(job_body)]
@@ -65,6 +65,17 @@ _JOB_LINKS = {
     "artifacts": _link("list_artifacts"),
     "artifact": _link("get_artifact", name="result.json"),
 }
+_IDEMPOTENCY_KEY = {
+    "name": "Idempotency-Key",
+    "in": "header",
+    "required": False,
+    "description": "Makes the request safe to repeat: the same key with the same body gives the same job.",
+    "schema": {"type": "string", "minLength": 1, "maxLength": LONGEST_KEY},
+}
+_Wait = Annotated[
+    float,
+    Query(ge=0, le=LONGEST_WAIT_S, allow_inf_nan=False, description="Wait so long for the job to end [s]."),
+]
 _LOCATION = {"Location": {"description": "The job.", "schema": {"type": "string"}}}
 _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"type": "integer"}}}
 
@@ -77,21 +88,23 @@ _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"t
     responses={
         200: {
             "model": JobView,
-            "description": "From the cache, or replayed",
+            "description": "From the cache, replayed, or ended while it was waited for",
             "headers": _LOCATION,
             "links": _JOB_LINKS,
         },
         202: {"description": "Queued", "headers": _LOCATION | _SOON, "links": _JOB_LINKS},
         **problem_responses(401, 403, 404, 408, 409, 413, 415, 422, 429),
     },
-    openapi_extra=_body_of("JobSubmission"),
+    openapi_extra=_body_of("JobSubmission") | {"parameters": [_IDEMPOTENCY_KEY]},
 )
-async def submit_job(server: Server, principal: Submitter, request: Request, text: _Body) -> Response:
+async def submit_job(server: Server, principal: Submitter, request: Request, text: _Body, wait: _Wait = 0) -> Response:
     """Queue a job document; labels, priority and timeout_s may stand beside its fields.
 
     Equal jobs of one owner are computed once: a job whose result is there already succeeds at once (200). The header
     `Idempotency-Key` (1 to 255 printable characters) makes a request safe to repeat: the same key with the same body
     gives the same job (200), with another body 422, while the first request is still at work 409.
+
+    With `wait` the answer comes when the job has ended (200), or, where the time is up, as without it (202).
     """
     key = _idempotency_key(request)
     async with _admitted(server, principal, text) as admitted:
@@ -101,11 +114,14 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
     request.state.job_id = job.id
     outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
     server.metrics.submissions.labels(outcome).inc()
+    if wait:
+        job = await _watched(server, principal.owner, job.id, wait, None)
     headers = {"Location": address(f"/v1/jobs/{job.id}")}
-    if outcome == "queued":
+    is_open = job.state not in ENDED if wait else outcome == "queued"
+    if is_open:
         headers["Retry-After"] = POLL_AGAIN_S
     content = job_view(job, server.jobs.waits_for).model_dump_json()
-    return Response(content, 202 if outcome == "queued" else 200, headers, "application/json")
+    return Response(content, 202 if is_open else 200, headers, "application/json")
 
 
 @router.post(
@@ -164,38 +180,41 @@ def list_jobs(
     "/jobs/{job_id:id}",
     summary="Look at a job",
     response_model=JobView,
-    responses=problem_responses(401, 403, 404, 422),
+    responses={
+        202: {"model": JobView, "description": "Not ended, though waited for"},
+        **problem_responses(401, 403, 404, 422),
+    },
 )
 async def get_job(
     server: Server,
     principal: Reader,
     job_id: JobId,
-    wait: Annotated[
-        float,
-        Query(
-            ge=0,
-            le=LONGEST_WAIT_S,
-            allow_inf_nan=False,
-            description=f"Wait so long for the job to end [s], {ANSWER_WITHIN_S:g} s at most: then ask again.",
-        ),
-    ] = 0,
+    response: Response,
+    wait: _Wait = 0,
     after: Annotated[
         int | None, Query(ge=0, le=2**31 - 1, description="Wait only until there is an event newer than this one.")
     ] = None,
 ) -> JobView:
     """With `wait` the answer comes when the job has ended, with `after` when anything has happened to it.
 
-    An answer whose state is not final says that the time is up: ask again.
+    202 says that the time is up and the job has not ended: ask again.
     """
-    store, owner, ends = server.store, principal.owner, monotonic() + min(wait, ANSWER_WITHIN_S)
+    job = await _watched(server, principal.owner, job_id, wait, after)
+    if wait and job.state not in ENDED:
+        response.status_code = 202
+    return job_view(job, server.jobs.waits_for)
+
+
+async def _watched(server: Parts, owner: str, job_id: str, wait_s: float, after: int | None) -> JobRecord:
+    """A job when it has ended, where ``after`` is given when it has a newer event, or when the time is up."""
+    store, ends = server.store, monotonic() + wait_s
     with store.changes.watch(job_id) as watch:
         while True:
             job, news = await watch.read(owner, partial(store.get, owner, job_id))
             waiting = found(job).state not in ENDED and (after is None or job.last_event <= after)
             left = ends - monotonic()
             if not waiting or left <= 0 or store.changes.closed or not await watch.wait(news, left):
-                break
-    return job_view(job, server.jobs.waits_for)
+                return job
 
 
 @router.post(
@@ -264,8 +283,8 @@ def _submit(
 
 def _idempotency_key(request: Request) -> str | None:
     key = request.headers.get("idempotency-key")
-    if key is not None and not (1 <= len(key) <= 255 and key.isascii() and key.isprintable()):
-        detail = "must have 1 to 255 printable ASCII characters"
+    if key is not None and not (1 <= len(key) <= LONGEST_KEY and key.isascii() and key.isprintable()):
+        detail = f"must have 1 to {LONGEST_KEY} printable ASCII characters"
         raise HttpProblem(422, f"Idempotency-Key {detail}", "invalid_request", errors=[("Idempotency-Key", detail)])
     return key
 

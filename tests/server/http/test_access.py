@@ -1,11 +1,14 @@
 """Keys, scopes, owners, and what listens where."""
 
+import base64
+import json
 import time
 
 import pytest
 from fastapi.testclient import TestClient
 from wsrender_server.app import create_app
 from wsrender_server.auth import LOOK_AGAIN_S, check_binding, read_key_file
+from wsrender_server.openapi import openapi_document
 
 from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
 from wsrender.errors import InputError
@@ -137,7 +140,6 @@ def test_nobody_else_manages_keys(keyed, keys):
 
 def test_without_keys_the_first_is_made_by_the_command_line(client):
     problem_of(client.post("/v1/keys", json={"name": "x"}), 403, "insufficient_scope")
-    assert not any(path.startswith("/v1/keys") for path in client.get("/openapi.json").json()["paths"])
 
 
 def test_owners_see_only_their_own(keyed, keys, jobs, result_folder):
@@ -193,17 +195,28 @@ def test_arrays_belong_to_their_owner_and_stay_while_a_job_needs_them(keyed, key
         assert error["pointer"] == f"#/{field}/path" and "is for local runs only" in error["detail"]
 
 
-def test_openapi_asks_for_a_key_where_the_server_does(keyed, client):
-    secured = keyed.get("/openapi.json").json()
-    assert "/v1/keys" in secured["paths"]
-    assert secured["paths"]["/v1/jobs"]["post"]["security"] and secured["components"]["securitySchemes"]
-    assert "security" not in secured["paths"]["/healthz"]["get"]
+def test_openapi_names_keys_whether_or_not_the_server_asks(client):
+    must, may = (openapi_document(client.app, needed) for needed in (True, False))
+    assert must["components"] == may["components"] and must["components"]["securitySchemes"]
+    assert "/v1/keys" in must["paths"] and must["paths"].keys() == may["paths"].keys()
+    needed, allowed = (each["paths"]["/v1/jobs"]["post"]["security"] for each in (must, may))
+    assert {} not in needed and allowed == [*needed, {}]
+    assert "security" not in must["paths"]["/healthz"]["get"]
+    assert client.get("/openapi.json").json() == json.loads(json.dumps(may))
 
 
-def test_openapi_without_keys(client):
-    document = client.get("/openapi.json").json()
-    assert "securitySchemes" not in document["components"]
-    assert "security" not in document["paths"]["/v1/jobs"]["post"]
+def test_a_key_is_a_password_too(keyed, keys):
+    """For programs that know names and passwords only; the name does not matter."""
+    for name in ("", "ann"):
+        assert keyed.get("/v1/jobs", auth=(name, keys["ann"])).status_code == 200
+    for name, password in ((keys["ann"], ""), ("ann", "wrong"), ("ann", keys["ann"] + "\n")):
+        refused = keyed.get("/v1/jobs", auth=(name, password))
+        problem_of(refused, 401, "unauthorized")
+        assert refused.headers["WWW-Authenticate"].startswith("Basic")
+    for header in ("Basic", "Basic =", "Basic " + base64.b64encode(b"no colon").decode(), "Basic \xff"):
+        problem_of(keyed.get("/v1/jobs", headers={"Authorization": header.encode("latin-1")}), 401, "unauthorized")
+    asked = keyed.get("/v1/jobs").headers["WWW-Authenticate"]
+    assert asked == "Bearer"  # a browser would ask people for a password
 
 
 WRONG_HOSTS = ("evil.example", "127.0.0.1.evil.example", "192.168.1.2", "localhost.evil.example")

@@ -6,6 +6,7 @@ import pytest
 from wsrender_server.job_body import EXAMPLES, body_schemas
 
 from tests.server.http.idle_server import DOCUMENT
+from tests.server.http.openapi_names import FILE, names_of
 from wsrender.analyses.jobs import parse_job
 from wsrender.errors import DocumentError
 
@@ -71,3 +72,42 @@ def test_the_published_schema_is_that_of_the_documents():
         except DocumentError:
             allowed = False
         assert validator.is_valid(body) == allowed, body
+
+
+def test_names_stay_those_that_clients_know(document):
+    """A change of a line breaks clients that generators made: write the file again where that is meant, and say it in
+    CHANGELOG."""
+    assert [*names_of(document)] == FILE.read_text().splitlines()
+
+
+def test_no_object_is_a_default(document):
+    def nodes(node):
+        if isinstance(node, dict | list):
+            yield node
+            for each in node.values() if isinstance(node, dict) else node:
+                yield from nodes(each)
+
+    objects = [node for node in nodes(document["components"]) if isinstance(node, dict)]
+    assert not any(isinstance(node.get("default"), dict) for node in objects)
+    kept = {json.dumps(node["x-default"]) for node in objects if "x-default" in node}
+    assert '{"locked": {}, "count": 16777216, "seed": 0, "method": "sobol"}' in kept
+
+
+def test_bodies_that_are_not_json_are_bytes_or_text(document):
+    for path, methods in document["paths"].items():
+        for operation in methods.values():
+            for body in (operation.get("requestBody", {}), *operation["responses"].values()):
+                for media_type, content in body.get("content", {}).items():
+                    schema = content["schema"]
+                    if not media_type.endswith("json"):
+                        text = {"type": "string"} | ({} if media_type.startswith("text/") else {"format": "binary"})
+                        assert schema == text, (path, media_type)
+                    else:
+                        assert schema, (path, media_type)
+
+
+def test_headers_that_clients_set_are_parameters(document):
+    paths = document["paths"]
+    named = {each["name"] for each in paths["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]}
+    assert {"Range", "If-Range", "If-None-Match"} <= named
+    assert {each["name"] for each in paths["/v1/jobs"]["post"]["parameters"]} == {"Idempotency-Key", "wait"}

@@ -1,6 +1,8 @@
 """Operation: health, readiness, metrics, logs, documentation, catalogue, and answers to faults."""
 
+import codecs
 import errno
+import io
 import re
 import sqlite3
 from contextlib import closing
@@ -220,6 +222,26 @@ def test_models(client, submit):
     assert submit(robot={"model": model["sha256"]})["state"] == "queued"
     problem_of(client.post("/v1/models", content=text), 415)
     problem_of(client.get(f"/v1/models/{'0' * 64}"), 404, "model_not_found")
+
+
+def test_files_that_no_header_describes_are_known_by_their_first_bytes(client):
+    headers = {"Content-Type": "application/octet-stream"}
+    arm = b"<mujoco><worldbody/></mujoco>"
+    table = io.BytesIO()
+    np.save(table, np.zeros((2, 3)))
+    for content in (
+        arm,
+        codecs.BOM_UTF8 + b"\n " + arm,
+        zipped({"arm.xml": arm}),
+        table.getvalue(),
+        b"x_m,y_m,z_m\n0,0,0",
+    ):
+        response = client.post("/v1/models", content=content, headers=headers)
+        assert response.status_code == 201 and client.get(response.json()["href"]).content == content
+    refused = ((b"", "invalid_model"), (b" <html/>", "invalid_model"), (b"PK\x03\x04 no more", "invalid_model"))
+    for content, code in refused:
+        problem = client.post("/v1/models", content=content, headers=headers)
+        assert problem.status_code in (409, 422) and problem.json()["code"] == code, problem.text
 
 
 def test_zips_of_models(client, submit):

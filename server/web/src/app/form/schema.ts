@@ -11,6 +11,8 @@ export interface Schema {
   title?: string;
   description?: string;
   default?: Json;
+  "x-default"?: Json; // one that is an object, which generators of clients cannot have as a default
+  "x-sources"?: string[]; // of a union of objects: the field that each has alone
   const?: Json;
   enum?: Json[];
   anyOf?: Schema[];
@@ -42,7 +44,9 @@ const SHA256 = "^[0-9a-f]{64}$";
 export class Schemas {
   private readonly parts: Record<string, Schema>;
 
-  constructor(openapi: { components: { schemas: Record<string, Schema> } }) { this.parts = openapi.components.schemas; }
+  constructor(openapi: { components: { schemas: Record<string, Schema> } }) {
+    this.parts = Object.fromEntries(Object.entries(openapi.components.schemas).map(([name, part]) => [name, whole(part, openapi.components.schemas)]));
+  }
 
   /** What can be submitted, by analysis. */
   analyses(): AnalysisSchema[] {
@@ -151,6 +155,26 @@ export class Schemas {
     if (part.type === "object") return part.title ? words(part.title.replace(/([a-z])([A-Z])/g, "$1 $2").replace(/ (Spec|Choice)$/, "")) : "by name";
     return { boolean: "yes or no", integer: "number", number: "number", string: "name" }[part.type ?? ""] ?? "value";
   }
+}
+
+/** A schema with the defaults that are objects; a union of objects by their sources as one object again. */
+function whole(part: Schema, parts: Record<string, Schema>): Schema {
+  const own = defaulted(part), sources = part["x-sources"];
+  if (!sources) return own;
+  const members = part.anyOf!.map((each) => defaulted(parts[each.$ref!.split("/").pop()!]!));
+  const properties = Object.assign({}, ...members.map((each) => each.properties));
+  const { anyOf, ...rest } = own;
+  return { ...members[0]!, ...rest, required: undefined, properties, oneOf: sources.map((source) => ({ required: [source] })) };
+}
+
+function defaulted(node: Schema): Schema;
+function defaulted(node: unknown): unknown;
+function defaulted(node: unknown): unknown {
+  if (Array.isArray(node)) return node.map((each) => defaulted(each));
+  if (typeof node !== "object" || node === null || isExact(node)) return node;
+  const copy: Record<string, unknown> = Object.fromEntries(Object.entries(node).map(([name, value]) => [name, defaulted(value)]));
+  if ("x-default" in copy) copy.default = copy["x-default"];
+  return copy;
 }
 
 /** Whether two values are the same, whatever the order of their names. */

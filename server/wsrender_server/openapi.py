@@ -1,0 +1,72 @@
+"""The OpenAPI document, as generators of clients need it: whatever the settings, the same operations and names."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+
+from wsrender.results.view.manifest import MANIFEST
+from wsrender_server.job_body import body_schemas
+from wsrender_server.problems import Problem
+
+BINARY = {"type": "string", "format": "binary"}
+_RANGE = {
+    "Range": "Bytes of the file, such as bytes=0-1023; one range.",
+    "If-Range": "Entity tag of the file that the range is of; where it is another one, the whole is answered.",
+}
+_HAVE = {"If-None-Match": "Entity tags that the client has; 304 where the file's is among them."}
+
+
+def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
+    """The document of an application; ``keys_needed``: whether a key must be given, or only may."""
+    document = get_openapi(
+        title=app.title,
+        version=app.version,
+        description=app.description,
+        license_info=app.license_info,
+        routes=app.routes,
+        openapi_version=app.openapi_version,
+    )
+    schemas = document["components"]["schemas"]
+    schemas |= body_schemas()
+    schemas |= _view_schemas()
+    schemas["Problem"] = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas |= schemas["Problem"].pop("$defs", {})
+    for unused in ("HTTPValidationError", "ValidationError"):
+        schemas.pop(unused, None)
+    for operation in operations(document):
+        _name_headers(operation)
+        _type_bodies(operation)
+        if not keys_needed and "security" in operation:
+            operation["security"].append({})
+    return document
+
+
+def operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every operation of a document."""
+    for path in document["paths"].values():
+        yield from path.values()
+
+
+def _name_headers(operation: dict[str, Any]) -> None:
+    """The headers of files, as parameters."""
+    named = (_RANGE if "206" in operation["responses"] else {}) | (_HAVE if "304" in operation["responses"] else {})
+    for name, description in named.items():
+        header = {"name": name, "in": "header", "required": False, "description": description}
+        operation.setdefault("parameters", []).append(header | {"schema": {"type": "string"}})
+
+
+def _type_bodies(operation: dict[str, Any]) -> None:
+    """What is neither JSON nor text is binary, and so is XML, whose bytes say how they are to be read."""
+    bodies = [operation.get("requestBody", {}), *operation["responses"].values()]
+    for media_type, content in (item for body in bodies for item in body.get("content", {}).items()):
+        if not media_type.endswith("json"):
+            content["schema"] = {"type": "string"} if media_type.startswith("text/") else dict(BINARY)
+
+
+def _view_schemas() -> dict[str, Any]:
+    """The manifest of a view."""
+    found = MANIFEST.json_schema(ref_template="#/components/schemas/View{model}")
+    parts = {f"View{name}": part for name, part in found.pop("$defs").items()}
+    return {**parts, "Manifest": found}
