@@ -63,6 +63,8 @@ def _type_bodies(operation: dict[str, Any]) -> None:
     for media_type, content in (item for body in bodies for item in body.get("content", {}).items()):
         if not media_type.endswith("json"):
             content["schema"] = {"type": "string"} if media_type.startswith("text/") else dict(BINARY)
+        elif not content.get("schema"):  # a description of messages
+            content["schema"] = {"type": "object"}
 
 
 def _view_schemas() -> dict[str, Any]:
