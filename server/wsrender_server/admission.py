@@ -200,27 +200,25 @@ class Admissions:
         self._max_samples = max_samples
         self._warming: asyncio.Task[Any] | None = None
 
-    async def of(self, owner: str, text: bytes) -> Admitted:
-        """The submission of a body; raises as `admit` and `check_uploads`. ``discard`` it in the end."""
+    async def of(self, owner: str, text: bytes, then: Callable[[Admitted], Found]) -> Found:
+        """What ``then`` makes of the submission of a body, in a thread; raises as `admit` and `check_uploads`.
+
+        One turn of a thread for all of it: turns are what many requests at once wait for.
+        """
         if len(text) <= LONGEST_HERE:
-            return await run_in_threadpool(self._admitted, owner, text)
+            return await run_in_threadpool(lambda: self._checked(owner, admit(text, self._max_samples), then))
         scratch = self._store.files.root / "scratch"
         found = await self._process.run(_admit_aside, text, self._max_samples, scratch, timeout_s=LONGEST_S)
         if isinstance(found, dict):
             raise refusal(found, found["status"])
         try:
-            uploads = found.document.uploads
-            await run_in_threadpool(check_uploads, self._store, owner, uploads, found.prefix)
-        except BaseException:
+            return await run_in_threadpool(self._checked, owner, found, then)
+        finally:
             found.discard()
-            raise
-        return found
 
-    def _admitted(self, owner: str, text: bytes) -> Admitted:
-        """The submission of a short body, in one turn of a thread: turns are what many requests at once wait for."""
-        found = admit(text, self._max_samples)
+    def _checked(self, owner: str, found: Admitted, then: Callable[[Admitted], Found]) -> Found:
         check_uploads(self._store, owner, found.document.uploads, found.prefix)
-        return found
+        return then(found)
 
     async def check_edited(self, owner: str, text: bytes) -> None:
         """Check the body of a robot or an environment that is edited; raises as `uploads_of_edited`."""

@@ -79,7 +79,7 @@ class Parts:
         self.views = Views(self.store.files, self.side_process)
 
 
-def _parts(request: Request) -> Parts:
+async def _parts(request: Request) -> Parts:  # else every request would wait for a thread that looks them up
     return request.app.state.parts
 
 

@@ -24,6 +24,8 @@ async def known_parameters(connection: HTTPConnection) -> None:
 
 def check_parameters(connection: HTTPConnection) -> None:
     """Raise HttpProblem 422 for query parameters that the matched route does not declare, or that come twice."""
+    if not connection.scope["query_string"]:
+        return
     allowed = parameters_of(connection.scope["route"])
     faults = []
     for name, times in Counter(name for name, _ in connection.query_params.multi_items()).items():

@@ -28,6 +28,7 @@ class Attempt:
     done: dict[int, int] = field(default_factory=dict)  # samples done by shard; of a refinement, points decided
     decided: tuple[int, int] = (0, 0)  # tables of the first step, points of the last, and about how many there will be
     kept: int = 0  # samples that an earlier run of the server had done
+    begun: bool = False  # whether a worker has come to it
     turn: int = 0  # of its owner, see `FairShare`
     losses: int = 0
     started: float = 0.0

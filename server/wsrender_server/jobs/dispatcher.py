@@ -23,6 +23,8 @@ from wsrender_server.settings import Settings
 TICK_S = 0.1
 LOOK_S = 1.0  # between looks at a table that this process has not changed
 MOST_LAUNCHES = 16  # at a tick: whoever asks the server for anything has their turn in between
+AHEAD = 16  # attempts that wait at the scheduler; where more do, workers need no others yet
+FEW_LAUNCHES = 1  # at a tick then: whoever starts workers for what waits sees ever more
 RECORD_S = 0.5
 PAUSE_S = 1.0
 MOST_LOSSES = 4
@@ -158,10 +160,12 @@ class Dispatcher:
 
     def _launch_some(self) -> None:
         """Hand out what waits, of much the first; owners take turns."""
+        waiting = sum(not attempt.begun for attempt in self._attempts.values())
+        most = MOST_LAUNCHES if waiting < AHEAD else FEW_LAUNCHES
         stopping = ComputationState.STOPPING
         ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
-        if len(ready) > MOST_LAUNCHES:
-            ready = self.store.in_turn(ready)[:MOST_LAUNCHES]
+        if len(ready) > most:
+            ready = self.store.in_turn(ready)[:most]
         for computation_id in ready:
             self._launch(computation_id)
 
@@ -269,6 +273,7 @@ class Dispatcher:
         if attempt is None or attempt.token != message["token"]:
             return
         if "step" in message:
+            attempt.begun = True
             self._shares[attempt.record.priority].begun(attempt.turn)
             self.store.begin(computation_id, attempt.record.attempt)
             attempt.stale = True

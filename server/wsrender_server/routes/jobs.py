@@ -2,15 +2,14 @@
 
 import hashlib
 import json
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Annotated, Any, cast
 
 from fastapi import APIRouter, Depends, Query, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from wsrender.analyses.registry import job_classes
 from wsrender.errors import InputError
@@ -107,9 +106,8 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
     With `wait` the answer comes when the job has ended (200), or, where the time is up, as without it (202).
     """
     key = _idempotency_key(request)
-    async with _admitted(server, principal, text) as admitted:
-        submit = partial(_submit, server, principal.owner, admitted, key, request.app.state.keys_at_work)
-        submission = await run_in_threadpool(submit)
+    submit = partial(_submit, server, principal, key, request.app.state.keys_at_work)
+    submission = await server.admissions.of(principal.owner, text, submit)
     job = submission.job
     request.state.job_id = job.id
     outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
@@ -133,12 +131,8 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
 )
 async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
     """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""
-    async with _admitted(server, principal, text) as admitted:
-        document = admitted.document
-        planned = document.text or await run_in_threadpool(cast(Path, admitted.written).read_text, "utf-8")
-    return Estimate.model_validate(
-        {"valid": True} | await server.estimates.of(principal.owner, document.sha256, planned)
-    )
+    planned = await server.admissions.of(principal.owner, text, partial(_to_plan, principal))
+    return Estimate.model_validate({"valid": True} | await server.estimates.of(principal.owner, *planned))
 
 
 @router.get(
@@ -252,21 +246,18 @@ def delete_job(server: Server, principal: Submitter, job_id: JobId) -> Response:
     return Response(status_code=204)
 
 
-@asynccontextmanager
-async def _admitted(server: Parts, principal: Principal, text: bytes) -> AsyncIterator[Admitted]:
-    admitted = await server.admissions.of(principal.owner, text)
-    try:
-        check_priority(principal, admitted.options.priority, "#/priority")
-        yield admitted
-    finally:
-        if admitted.written is not None:
-            await run_in_threadpool(admitted.discard)
+def _to_plan(principal: Principal, admitted: Admitted) -> tuple[str, str]:
+    """Hash and text of a document."""
+    check_priority(principal, admitted.options.priority, "#/priority")
+    document = admitted.document
+    return document.sha256, document.text or cast(Path, admitted.written).read_text("utf-8")
 
 
 def _submit(
-    server: Parts, owner: str, admitted: Admitted, key: str | None, at_work: dict[tuple[str, str], object]
+    server: Parts, principal: Principal, key: str | None, at_work: dict[tuple[str, str], object], admitted: Admitted
 ) -> Submission:
-    document, options = admitted.document, admitted.options
+    document, options, owner = admitted.document, admitted.options, principal.owner
+    check_priority(principal, options.priority, "#/priority")
     told = document.sha256 if document.text is None else json.loads(document.text)
     with _one_at_a_time(at_work, owner, key):
         return server.store.submit(
