@@ -12,6 +12,7 @@ from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.convertors import StringConvertor, register_url_convertor
+from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import compile_path
 from starlette.staticfiles import StaticFiles
@@ -46,6 +47,18 @@ VIEWER_HEADERS = {
     "Cache-Control": "no-cache",
     "Referrer-Policy": "no-referrer",
     "X-Frame-Options": "DENY",
+}
+# What pages of other origins may do, where any may: ask with a key, never with cookies, and read what clients read.
+CORS: dict[str, Any] = {
+    "allow_methods": ("GET", "HEAD", "POST", "DELETE"),
+    "allow_headers": (
+        *("Authorization", "Content-Type", "Idempotency-Key", "Last-Event-ID"),
+        *("Range", "If-Range", "If-None-Match", "X-Request-Id"),
+    ),
+    "expose_headers": (
+        *("Location", "ETag", "Content-Range", "Retry-After", "X-Request-Id"),
+        *("X-Shape", "X-Origin-M", "X-Voxel-Size-M", "X-At-M", "X-Array"),
+    ),
 }
 DESCRIPTION = """Workspace analysis of robotic manipulators. Submit a job document, follow the job, fetch its result.
 
@@ -122,6 +135,8 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
     ]
     answer_errors(app)
     app.add_middleware(BodyLayer, timeout_s=settings.read_timeout_s)
+    if settings.cors_origins:
+        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
     app.add_middleware(HostLayer, settings=settings)
     app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
     document = cache(lambda keys_needed: openapi_document(app, keys_needed))

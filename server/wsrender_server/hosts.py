@@ -49,10 +49,11 @@ def check_names(connection: HTTPConnection, settings: Settings) -> None:
         given = connection.headers.get("host", "")
         detail = f"the server does not know that it is {given!r}; if so, WSRENDER_ALLOWED_HOSTS must name it"
         raise HttpProblem(403, detail, "wrong_host")
-    if origin is not None and (page := _host_of_origin(origin)) != host.lower() and page not in settings.allowed_hosts:
-        raise HttpProblem(
-            403, f"pages of {origin} may not ask {host}: WSRENDER_ALLOWED_HOSTS names those that may", "wrong_origin"
-        )
+    if origin is None or origin.lower() in settings.cors_origins:
+        return
+    if (page := _host_of_origin(origin)) != host.lower() and page not in settings.allowed_hosts:
+        detail = f"pages of {origin} may not ask {host}: WSRENDER_CORS_ORIGINS names those that may"
+        raise HttpProblem(403, detail, "wrong_origin")
 
 
 def _may_be_ours(host: str, settings: Settings) -> bool:

@@ -1,6 +1,7 @@
 """Settings of the server: environment variables WSRENDER_…, options of the commands, defaults."""
 
 import os
+import re
 import warnings
 from difflib import get_close_matches
 from functools import cached_property
@@ -8,11 +9,12 @@ from ipaddress import IPv4Network, IPv6Network, ip_address
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 OLD_FOLDER = Path("wsrender-data")  # in the working directory: the default of 0.1
 GIB = 2**30
+_ORIGIN = re.compile(r"https?://(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:[0-9]{1,5})?")
 PREFIX = "WSRENDER_"
 # Variables that are not the server's: of kernels, of collision tables and uploaded models, of the client, of results.
 OTHERS = ("THREADS", "CACHE_DIR", "MODELS", "SERVER", "TOKEN", "SAY_HOST")
@@ -37,7 +39,14 @@ def _listed(value: Any) -> Any:
     return [part.strip().lower() for part in value.split(",") if part.strip()] if isinstance(value, str) else value
 
 
+def _origin(value: str) -> str:
+    if not _ORIGIN.fullmatch(value):
+        raise ValueError(f"must be origins, such as https://lab.example.org or http://localhost:3000, not {value!r}")
+    return value
+
+
 Names = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_listed)]
+Origins = Annotated[tuple[Annotated[str, AfterValidator(_origin)], ...], NoDecode, BeforeValidator(_listed)]
 Networks = Annotated[tuple[IPv4Network | IPv6Network, ...], NoDecode, BeforeValidator(_listed)]
 
 
@@ -79,6 +88,9 @@ class Settings(BaseSettings):
     allowed_hosts: Names = ()
     """Names, separated by commas, that the server answers to beside addresses, this machine's own name and names
     without a dot or in .local; their pages may ask it too. Without an API key only localhost and these."""
+    cors_origins: Origins = ()
+    """Origins, separated by commas, whose pages may ask the server and read its answers (CORS), each with an API key of
+    its own where the server asks for one."""
     root_path: str = Field(default="", pattern=r"^((/[A-Za-z0-9._~-]+)+)?$")
     """Prefix under which a proxy shows the server, such as /lab: addresses in answers begin with it."""
     trusted_proxies: Networks = ()

@@ -137,3 +137,46 @@ def test_what_is_no_proxy_is_refused(monkeypatch):
     monkeypatch.setenv("WSRENDER_TRUSTED_PROXIES", "the proxy")
     with pytest.raises(InputError, match="trusted_proxies"):
         settings_of()
+
+
+OTHER = "https://lab.example.org"
+
+
+def test_pages_of_named_origins_ask_and_read(asked, jobs, result_folder):
+    """As a browser does: the question whether it may, then the request; answers name what scripts may read."""
+    with asked(cors_origins=(OTHER, "http://localhost:3000")) as client:
+        wanted = {
+            "Access-Control-Request-Method": "POST",
+            "Access-Control-Request-Headers": "authorization,content-type",
+        }
+        may = client.options("/v1/jobs", headers={"Origin": OTHER} | wanted)
+        assert may.status_code == 200 and may.headers["Access-Control-Allow-Origin"] == OTHER
+        assert "POST" in may.headers["Access-Control-Allow-Methods"]
+        assert {"authorization", "idempotency-key"} <= set(
+            may.headers["Access-Control-Allow-Headers"].lower().split(", ")
+        )
+        assert "Access-Control-Allow-Credentials" not in may.headers
+        made = client.post("/v1/jobs", json=DOCUMENT, headers={"Origin": OTHER})
+        assert made.status_code == 202 and made.headers["Access-Control-Allow-Origin"] == OTHER
+        jobs.complete(made.json()["id"], result_folder)
+        plane = client.get(f"/v1/jobs/{made.json()['id']}/volume/slice", headers={"Origin": "http://localhost:3000"})
+        exposed = set(plane.headers["Access-Control-Expose-Headers"].lower().split(", "))
+        own = {name for name in plane.headers if name.startswith("x-") and name != "x-content-type-options"}
+        assert plane.status_code == 200 and own | {"location", "etag"} <= exposed
+        for other in ("https://evil.example.org", f"{OTHER}:444", OTHER.replace("https", "http"), f"{OTHER}.evil.org"):
+            refused = client.options("/v1/jobs", headers={"Origin": other} | wanted)
+            assert refused.status_code == 403 and "Access-Control-Allow-Origin" not in refused.headers
+            problem_of(client.post("/v1/jobs", json=DOCUMENT, headers={"Origin": other}), 403, "wrong_origin")
+
+
+def test_origins_are_checked(monkeypatch):
+    monkeypatch.setenv("WSRENDER_CORS_ORIGINS", f"{OTHER.upper()}, http://[::1]:3000")
+    assert Settings().cors_origins == (OTHER, "http://[::1]:3000")
+    for wrong in ("*", "lab.example.org", f"{OTHER}/", "ftp://lab", "null", f"{OTHER}, *"):
+        with pytest.raises(ValueError, match="must be origins"):
+            Settings(cors_origins=wrong)
+
+
+def test_without_a_setting_no_page_of_another_site_reads(client):
+    answer = client.get("/v1/version", headers={"Origin": "http://127.0.0.1:5173"})
+    assert answer.status_code == 200 and not [name for name in answer.headers if name.startswith("access-control")]
