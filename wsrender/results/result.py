@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
+    from wsrender.results.drawing.faces import Faces
     from wsrender.results.drawing.result_plots import ResultPlots
 
 REPORT_VIEWS = ("boundary", "isosurface")
@@ -91,7 +92,14 @@ class Result:
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
         title, arms = sampling_text(self.document), len(self.document.get("robots") or ()) or self._legs
         held = (*self._drawable(), self.tables, self.volumes, self.meshes)
-        return drawing.ResultPlots(self.document, title, *held, arms)
+        return drawing.ResultPlots(self.document, title, *held, arms, self._bodies)
+
+    def _bodies(self) -> "list[Faces | None]":
+        """What is seen of the robot in each row of the skeleton."""
+        from wsrender.results.view.shown_bodies import bodies_shown
+
+        samples, _, skeleton = self._drawable()
+        return [] if skeleton is None else bodies_shown(self.document, self.tables, samples, skeleton)
 
     @property
     def _warnings(self) -> list[dict[str, Any]]:

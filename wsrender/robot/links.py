@@ -22,11 +22,15 @@ COARSE_FACES = {"sphere": 320, "capsule": 288, "cylinder": 48, "ellipsoid": 320,
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
-    """Triangles of one geometry in the world frame: ``vertices`` (V, 3) [m], ``faces`` (F, 3); colour 0 … 1."""
+    """Triangles of one geometry in the world frame: ``vertices`` (V, 3) [m], ``faces`` (F, 3); colour 0 … 1.
+
+    ``frame``: the joint whose frame carries it, -1 for the base's.
+    """
 
     vertices: np.ndarray
     faces: np.ndarray
     color: tuple[float, float, float]
+    frame: int = -1
 
     __repr__ = short_repr
 
@@ -78,7 +82,7 @@ def coarse_faces(robot: Robot) -> int:
 def _placed(shape: "Shape", T: np.ndarray) -> LinkShape:
     mesh = shape_mesh(shape)
     red, green, blue = (float(part) for part in shape.rgba[:3])
-    return LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue))
+    return LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue), shape.frame)
 
 
 def shape_mesh(shape: "Shape", coarse: bool = False) -> "trimesh.Trimesh":

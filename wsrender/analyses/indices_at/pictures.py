@@ -29,8 +29,9 @@ def polytopes(plot: ResultPlots, configuration: int | None = None) -> Figure:
     found = {kind: meshes[f"{kind}_polytope_{k}"] for kind in _COLORS if f"{kind}_polytope_{k}" in meshes}
     if not found:
         raise InputError("configuration", f"{k} has no mesh of a polytope; {', '.join(map(str, drawn))} have")
-    arm = np.asarray(plot.skeleton)[np.searchsorted(rows, k)]
-    corners = [np.asarray(mesh.vertices) for mesh in found.values()]
+    row = int(np.searchsorted(rows, k))
+    arm, body = np.asarray(plot.skeleton)[row], plot.bodies[row]
+    corners = [np.asarray(mesh.vertices) for mesh in found.values()] + ([] if body is None else [body.vertices])
     figure, view = new_view(np.concatenate([arm, *corners]), plot.heading("other"), "world")
     handles = []
     for kind, mesh in found.items():
@@ -43,6 +44,6 @@ def polytopes(plot: ResultPlots, configuration: int | None = None) -> Figure:
         unit = pretty_unit(str(table["unit"][at][0]))
         label = f"{kind}: radius {three_digits(radius)} {unit},\n1 m stands for {three_digits(scale)} {unit}"
         handles.append(Patch(color=color, alpha=_VEIL, label=label))
-    draw_arm(view, arm)
+    draw_arm(view, arm, body=body)
     add_legend(figure, handles)
     return figure

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import thinned
+from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import arm_handles, draw_arm
@@ -29,24 +30,30 @@ _AXIS = 0.05  # its length, relative to the longest edge of the box
 
 @paper_style()
 def labelled_targets(
-    targets: Table, skeleton: np.ndarray | None = None, *, title: Heading | str = "", frame: str = "world"
+    targets: Table,
+    skeleton: np.ndarray | None = None,
+    *,
+    body: Faces | None = None,
+    title: Heading | str = "",
+    frame: str = "world",
 ) -> Figure:
     """Columns ``position`` (N, 3) [m], ``label`` (N,) and, for whole poses, ``quat_wxyz`` (N, 4), of the tip.
 
-    The first arm of ``skeleton`` (K, L+2, 3) [m] reaches the first of the reachable ones. Raises InputError for a table
-    without these columns or rows.
+    The first arm of ``skeleton`` (K, L+2, 3) [m], or its ``body``, reaches the first of the reachable ones. Raises
+    InputError for a table without these columns or rows.
     """
     if not {"position", "label"} <= set(targets.columns) or len(targets) == 0:
         raise InputError("table", f"holds {', '.join(targets.columns)}; rows of position and label are needed")
     position, label = targets["position"], targets["label"].astype(str)
     arms = np.empty((0, 2, 3)) if skeleton is None else np.asarray(skeleton, float)[:1]
-    figure, view = new_view(np.concatenate([position, arms.reshape(-1, 3)]), title, frame)
+    standing = arms.reshape(-1, 3) if body is None else body.vertices
+    figure, view = new_view(np.concatenate([position, standing]), title, frame)
     if "quat_wxyz" in targets.columns and len(targets) <= _AXES:
         oriented = np.isfinite(targets["quat_wxyz"]).all(axis=1)
         _draw_axes(view, position[oriented], targets["quat_wxyz"][oriented])
     for arm in arms:
-        draw_arm(view, arm)
-    handles = arm_handles() if len(arms) else []
+        draw_arm(view, arm, body=body)
+    handles = arm_handles([body]) if len(arms) else []
     for k, (name, marks) in enumerate(_MARKS.items()):
         at = np.flatnonzero(label == name)
         if len(at):
@@ -66,4 +73,6 @@ def _draw_axes(view: View, position: np.ndarray, quat_wxyz: np.ndarray) -> None:
 
 def targets(plot: ResultPlots) -> Figure:
     """The targets of a reachability job by their labels, with the arm at the first that it reaches."""
-    return labelled_targets(plot.tables["targets"], plot.skeleton, title=plot.heading("other"))
+    return labelled_targets(
+        plot.tables["targets"], plot.skeleton, body=next(iter(plot.bodies), None), title=plot.heading("other")
+    )

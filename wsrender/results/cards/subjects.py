@@ -89,9 +89,11 @@ def _end(limit: float) -> Any:
 
 
 def _standing(robot: Robot) -> ShownPicture:
-    from wsrender.results.view.stance import stance
+    from wsrender.results.view.robots import shown_alone
+    from wsrender.results.view.shown_bodies import bodies_at
 
-    figure = drawing.robot(robot.skeleton(stance(robot.chain)))
+    arm = shown_alone(robot)
+    figure = drawing.robot(robot.skeleton(arm.home), bodies=[bodies_at(arm, arm.home)])
     return ShownPicture("robot", drawing.png(figure, DOTS), "The arm in one of its postures")
 
 

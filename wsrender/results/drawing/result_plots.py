@@ -1,6 +1,6 @@
 """The pictures of one result: what ``result.plot`` offers."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,7 @@ class ResultPlots:
     volumes: Mapping[str, VolumeData] = field(default_factory=dict)
     meshes: "Mapping[str, trimesh.Trimesh]" = field(default_factory=dict)
     arms: int = 1  # robots whose skeletons stand one after the other
+    seen: Callable[[], list[Faces | None]] | None = None  # finds what is seen of the robot in each row of the skeleton
 
     __repr__ = short_repr
 
@@ -71,6 +72,13 @@ class ResultPlots:
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *pictures_of(self.document)})
+
+    @property
+    def bodies(self) -> list[Faces | None]:
+        """What is seen of the robot in each row of the skeleton; None where that is not known."""
+        if self.skeleton is None:
+            return []
+        return [None] * len(self.skeleton) if self.seen is None else self.seen()
 
     def heading(self, kind: Kind) -> Heading:
         """The title of a picture of this kind, with the result's warnings that concern it."""
@@ -141,7 +149,7 @@ class ResultPlots:
         return vector_planes(self._volume(), name, at=at, title=self.heading("volume"))
 
     def robot(self, index: str | None = None) -> Figure:
-        """The arm as a stick figure in its workspace, coloured by an index (by default the first).
+        """The arm's bodies, or a stick figure, in its workspace, coloured by an index (by default the first).
 
         Without samples the workspace is drawn as a surface; arms of several robots have a colour and name each.
         """
@@ -151,7 +159,7 @@ class ResultPlots:
         names = [str(each.get("name")) for each in self.document.get("robots") or ()]
         both = self.meshes.get("intersection") if self.arms > 1 else None
         shared = None if both is None else faces_of(both, None)
-        kept = {"surface": surface, "shared": shared, "arms": self.arms, "names": names}
+        kept = {"surface": surface, "shared": shared, "arms": self.arms, "names": names, "bodies": self.bodies}
         return robot(self.skeleton, self.samples, index, **kept, title=self.heading("samples"))
 
     def _workspace(self) -> Faces | None:

@@ -37,13 +37,15 @@ class View:
             self.axes.add_collection(LineCollection(self._seen(lines), colors=color, linewidths=width, zorder=0))
         write_labels(self.axes, self.space)
 
-    def add_surface(self, corners: np.ndarray, colors: np.ndarray, alpha: float = 1.0) -> None:
+    def add_surface(
+        self, corners: np.ndarray, colors: np.ndarray, alpha: float = 1.0, zorder: float = _SURFACE
+    ) -> None:
         """Triangles with corners (T, 3, 3) [m] in colours (T, 3, 3): at each pixel the one nearest to the eye."""
         buffer = DepthBuffer.of(self.space.camera, self.size, corners)
         self.buffers.append(buffer)
         wide = self.size[0] / self.size[1]
         image = buffer.image(colors, alpha)
-        self.axes.imshow(image, extent=(-wide, wide, -1, 1), interpolation="none", zorder=_SURFACE, aspect="auto")
+        self.axes.imshow(image, extent=(-wide, wide, -1, 1), interpolation="none", zorder=zorder, aspect="auto")
         self._set_limits()
 
     def add_outline(self, **style: Any) -> None:
@@ -73,9 +75,9 @@ class View:
             kept = ends[(ends == ends[0]) | (ends == ends[-1]) | links[ends]]
             self.axes.plot(*self._seen(fine[kept]).T, zorder=_below(bool(hidden[rows[0]]), zorder), **style)
 
-    def add_marks(self, points: np.ndarray, *, zorder: float, **style: Any) -> None:
-        """A mark at each of points (N, 3) [m]; those that a surface hides lie below it."""
-        hidden = self._hidden(points)
+    def add_marks(self, points: np.ndarray, *, zorder: float, through: bool = False, **style: Any) -> None:
+        """A mark at each of points (N, 3) [m]; those that a surface hides lie below it, unless seen ``through`` it."""
+        hidden = np.zeros(len(points), bool) if through else self._hidden(points)
         for rows, below in ((~hidden, False), (hidden, True)):
             if rows.any():
                 self.axes.plot(*self._seen(points[rows]).T, ls="", zorder=_below(below, zorder), **style)
