@@ -1,13 +1,14 @@
 """What holds of every robot of the library: its README, names, shapes, closed form and second source."""
 
 import math
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.library import readme
+from tests.library import readme, table
 from tests.library.second_sources import SECOND_SOURCES
 from wsrender.robots import library
 
@@ -41,6 +42,17 @@ def test_a_changed_number_of_a_model_is_seen_in_its_readme(monkeypatch, tmp_path
     text = (original.parent / "README.md").read_text(encoding="utf-8")
     now = readme.written(text, "ur5e")
     assert "−0.4251, 0, 0" in now and now != text
+
+
+def test_the_table_of_all_robots_marks_what_is_odd():
+    """In the wrong unit, or with shapes too coarse, a robot stands out."""
+    row = next(table.rows(["pincherx100"]))
+    assert (row.joints, row.payload_kg, row.reach_m, row.odd) == (4, 0.05, 0.3, [])
+    # A solid of revolution: cells of its section, of 1, 2 and 4 mm, counted by 4e6 configurations, towards none.
+    assert row.volume_m3 == pytest.approx(0.0350, rel=0.02)
+    assert row.of_the_ball == pytest.approx(row.volume_m3 / (0.036 * math.pi))
+    assert replace(row, volume_m3=row.volume_m3 * 1e-9).odd == ["volume"]
+    assert replace(row, volume_m3=None, touching=31.0).odd == ["touching"]
 
 
 def test_every_product_has_a_second_source():
