@@ -1,11 +1,11 @@
 """Estimates beside what ran: samples, memory, bytes of files and seconds of jobs of all analyses, small and large.
 
-``python benchmarks/cost.py [NAME …]`` runs each job in a process of its own, with one thread, after a small
-one of the same analysis (imports, kernels), and prints what it took and the ratio of estimate to that. Seconds are
-processor time of that thread, as on an idle core, from the plan to saved files. Memory is the peak of the process
-between plan and result above what it had before, every array in pages of its own: what an allocator keeps of those
-that are gone, up to as much again, is not counted. Files count as they are before they are compressed. Constants of
-``wsrender/analyses/cost.py`` and the rates beside each analysis were read off such runs.
+``python benchmarks/cost.py [NAME …]`` runs each job in a process of its own, with one thread, after a small one of
+the same analysis (imports, kernels; among shapes after itself), and prints what it took and the ratio of estimate to
+that. Seconds are processor time of that thread, as on an idle core, from the plan to saved files. Memory is the peak
+of the process between plan and result above what it had before, every array in pages of its own: what an allocator
+keeps of those that are gone, up to as much again, is not counted. Files count as they are before they are compressed.
+Constants of ``wsrender/analyses/cost.py`` and the rates beside each analysis were read off such runs.
 """
 
 import ctypes
@@ -66,6 +66,8 @@ TARGET = {"position_m": [0.1, 0, 0.3], "quat_wxyz": [0, 1, 0, 0]}
 SIZES = ((0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0, 90, 0.35), (0.1, -90, 0.1), (0.05, 20, 0.1))
 ROWS = [{"a": a, "alpha_deg": alpha, "d": d, "limits_deg": [-180, 180]} for a, alpha, d in SIZES]
 GENERAL = {"dh": {"convention": "standard", "rows": ROWS}}  # without a closed form
+POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 1.0], "position_m": [0.35, 0.3, 0.5]}
+AMONG = {"environment": {"items": [POST]}, "constraints": {"self_collision": True}}
 PLANE = {"sampling": {"method": "random", "count": 100_000, "locked": {"joint4": 0.0}}}
 DESIGN = {"analysis": "parallel_workspace", "mechanism": {"library": "six_pus"}, "method": "exact"}
 BALL = [{"limits_deg": [-90, 90]}, {"alpha_deg": 90, "limits_deg": [60, 150]}]
@@ -92,12 +94,14 @@ JOBS = {
         | {"voxel_statistics": ["count", "maximum", "mean", "minimum"]},
         "map": arm("ur5e", 4_000_000, keep_map=True, map_columns=["configuration"]) | PLAIN,
         "labels": arm("puma560", 1_000_000, voxel_labels=True, voxel_size_m=0.05) | PLAIN,
+        "among shapes": arm("ur5e", 1_000_000, **AMONG, voxel_size_m=0.03) | PLAIN,
         "refined to .2 %": arm("stanford_arm", 1_000_000, refined_volume=0.002),
     },
     "capability": {
         "small": {"robot": "phantom_omni", "directions": 20, "voxel_size_m": 0.05},
         "default": {"robot": "phantom_omni"},
         "one direction": {"robot": "puma560", "directions": 1, "voxel_size_m": 0.02, "precision": "float32"},
+        "among shapes": {"robot": "ur5e", "directions": 10, "voxel_size_m": 0.2, **AMONG},
         "many directions": {"robot": "spherical", "directions": 2000, "voxel_size_m": 0.05},
     },
     "kinetostatic_field": {
@@ -107,6 +111,7 @@ JOBS = {
     "indices_at": {
         "small": {"robot": "phantom_omni", "configurations": rows(1000)},
         "large": {"robot": "ur5e", "configurations": rows(500_000)},
+        "among shapes": {"robot": "ur5e", "configurations": rows(100_000), **AMONG},
         "all": {"robot": "puma560", "configurations": rows(300_000), "indices": "all", "precision": "float32"},
         "polytopes": {"robot": LIMITED, "configurations": rows(20), "polytopes": ["velocity", "force"]},
     },
@@ -123,20 +128,26 @@ JOBS = {
         "small": {"robot": "puma560", **down(4, listed=True), "over": PLACES | {"x_m": [-0.6, 0.6, 0.3]}},
         "default": {"robot": "ur5e", **down(20, listed=True), "over": PLACES},
         "scored": {"robot": "ur5e", **down(20, listed=True), "over": PLACES, "index": "manipulability"},
+        "among shapes": {"robot": "ur5e", **down(20, listed=True), "over": PLACES, **AMONG},
         "positions": {"robot": "phantom_omni", "points_m": points(20), "over": PLACES},
     },
     "inverse_reachability": {
         "small": {"robot": "puma560", "target": TARGET, "over": PLACES | {"x_m": [-0.6, 0.6, 0.3]}},
         "default": {"robot": "ur5e", "target": TARGET, "over": PLACES},
+        "among shapes": {"robot": "ur5e", "target": TARGET, "over": PLACES, **AMONG},
+        "among shapes, 7 joints": {"robot": "franka_panda", "target": TARGET, "over": PLACES, **AMONG},
         "voxels": {"robot": "ur5e", "target": TARGET, "over": PLACES | {"z_m": [-0.6, 0.6, 0.05]}},
     },
     "two_arm_placement": {
         "small": {**down(4, listed=True), **two_arms("puma560", PLACES | {"x_m": [-0.6, 0.6, 0.3]})},
         "default": {**down(20, listed=True), **two_arms("ur5e", PLACES | {"yaw_deg": 0})},
+        "among shapes": {**down(20, listed=True), **two_arms("ur5e", PLACES | {"yaw_deg": 0}), **AMONG},
     },
     "reachability": {
         "small": {"robot": "phantom_omni", "points_m": points(500)},
         "large": {"robot": "ur5e", "points_m": points(300_000)},
+        "among shapes": {"robot": "ur5e", "points_m": points(1000), **AMONG},
+        "poses among shapes": {"robot": "ur5e", **down(20_000, listed=True), **AMONG},
         "poses": {"robot": "puma560", "points_m": points(100_000), "quats_wxyz": [[1, 0, 0, 0]] * 100_000},
     },
     "shared_workspace": {
@@ -275,7 +286,7 @@ def taken(job: dict) -> dict[str, dict[str, float]]:
 
 def one(analysis: str, size: str) -> None:
     """Run a job here, once warm, and print what it took as JSON."""
-    taken(job_of(analysis, "small"))
+    taken(job_of(analysis, size if "environment" in JOBS[analysis][size] else "small"))
     print(json.dumps(taken(job_of(analysis, size))))
 
 

@@ -49,6 +49,12 @@ JOBS = {
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
     "robot_comparison": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
 }
+POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 1.0], "position_m": [0.35, 0.3, 0.5]}
+AMONG = {"environment": {"items": [POST]}, "constraints": {"self_collision": True}}
+JOBS |= {
+    "base_placement: among shapes": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 20]}} | AMONG,
+    "inverse_reachability: among shapes": TARGET | {"over": OVER | {"yaw_deg": [0, 360, 20]}} | AMONG,
+}
 OF_WORKSPACE = ("labelled workspace", "map", "constrained workspace")
 
 
@@ -115,6 +121,11 @@ LARGE = {
     | {"hand_over": {"points_m": RING, "orientations": 400}},
     "inverse_reachability": TARGET | {"over": {"x_m": [-0.9, 0.9, 0.01], "y_m": [-0.9, 0.9, 0.01]}},
     "inverse_reachability: voxels": TARGET | {"over": OVER | {"z_m": [-1, 1, 0.1], "yaw_deg": [0, 360, 5]}},
+    "indices_at: among shapes": {"robot": "ur5e", "configurations": ROWS} | AMONG,
+    "base_placement: among shapes": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 20]}} | AMONG,
+    "inverse_reachability: among shapes": TARGET
+    | {"over": {"x_m": [-0.2, 0.2, 0.02], "y_m": [-0.2, 0.2, 0.02], "yaw_deg": [0, 360, 4]}}
+    | AMONG,
     "parallel_workspace": {"mechanism": "six_pus", "voxel_size_m": 0.02} | PLAIN,
     "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
     | {"orientations": {"tilt_deg": 40}},

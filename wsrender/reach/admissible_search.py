@@ -12,7 +12,7 @@ Redundant arms come from every start to another point of their self-motions, and
 stand where they stood in the start.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from copy import copy
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -28,6 +28,7 @@ from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import BATCH, MOST_TRIES, VERIFIED, InverseSolver, Labels, parts_of
 from wsrender.reach.starts import EPS, inwards, towards_limits
+from wsrender.robots.kinematics import Kinematics
 
 BLOCKED = 2  # beside the labels of evidence
 SAMPLES, NEIGHBOURS = 1 << 20, 1 << 18  # drawn; admitted ones that starts are chosen from
@@ -176,17 +177,10 @@ class AdmissibleSearch:
         found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
         all_rejected = (none | (solved & alone)).all(axis=1) & solved.any(axis=1) & (found.label[at] == UNDECIDED)
-        if self._turns_matter:
+        if turns_matter(self.solver.whole, self.admission.names):
             return
         found.label[at[all_rejected]] = BLOCKED
         found.proven[at[all_rejected]] = True
-
-    @cached_property
-    def _turns_matter(self) -> bool:
-        """Whether joints turn further than once, and a constraint may see how far."""
-        chain = self.solver.whole
-        turns = chain.upper_limits - chain.lower_limits > 2 * np.pi * (1 + 1e-9)
-        return bool((chain.revolute & turns).any()) and not TURN_FREE.issuperset(self.admission.names)
 
     def _nothing(self, features: np.ndarray) -> Admissible:
         """What is known before any try of targets with ``features`` (N, f)."""
@@ -341,6 +335,12 @@ class AdmissibleSearch:
         kinds = [anywhere[:each], towards_limits(chain, anywhere[each:]), self.samples[0][-each:]]
         number = np.concatenate([np.arange(len(kind)) for kind in kinds])
         return np.concatenate(kinds)[np.argsort(number, kind="stable")][:FURTHER_SAMPLES]
+
+
+def turns_matter(chain: Kinematics, names: Iterable[str]) -> bool:
+    """Whether joints turn further than once, and a constraint may see how far: postures leave turns out."""
+    turns = chain.revolute & (chain.upper_limits - chain.lower_limits > 2 * np.pi * (1 + 1e-9))
+    return bool(turns.any()) and not TURN_FREE.issuperset(names)
 
 
 def _some(orientation: np.ndarray | None, at: np.ndarray | slice) -> np.ndarray | None:

@@ -21,7 +21,7 @@ from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.reach.admissible_search import BLOCKED, TURN_FREE, AdmissibleSearch
+from wsrender.reach.admissible_search import BLOCKED, AdmissibleSearch, turns_matter
 from wsrender.reach.admission import WORTH_THREADS, Admission
 from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
@@ -325,11 +325,8 @@ class Placements:
 
     @property
     def _turns_matter(self) -> bool:
-        """Whether joints turn further than once, and a constraint may see how far: postures leave turns out."""
-        chain = self.solver.whole
         assert self.admission
-        turns = chain.revolute & (chain.upper_limits - chain.lower_limits > 2 * np.pi * (1 + 1e-9))
-        return bool(turns.any()) and not TURN_FREE.issuperset(self.admission.names)
+        return turns_matter(self.solver.whole, self.admission.names)
 
     @cached_property
     def _search(self) -> AdmissibleSearch:

@@ -16,10 +16,12 @@ from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import (
     DECIDED_PER_S,
     DOCUMENT_BYTES,
+    LEFT,
     LISTED_BYTES,
     LISTED_MEMORY,
     SEARCHED_BYTES,
     SEARCHED_PER_S,
+    STARTS_S,
     WRITTEN_PER_S,
     Asks,
     Cost,
@@ -37,7 +39,7 @@ from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.host_function import HostConstraint
-from wsrender.reach.admissible_search import BLOCKED
+from wsrender.reach.admissible_search import BLOCKED, turns_matter
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of, solved_bytes
 from wsrender.reach.placements import Decided, PlacedAdmission, Placements, PlacementsOfKinds
@@ -56,6 +58,7 @@ from wsrender.volume.table import Table
 PAIRS = 1 << 20  # of placements and targets that are decided together
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
+BIT_BYTES, CELL_BYTES = 4, 60  # in files: of up to eight labels of a placement, and of a cell of the map
 COORDINATES_BYTES, ROW_BYTES = 144, 62  # of a placement while tables are made of it, and in what is kept of these
 BALL_BYTES, LEFT_BYTES = 20, 6e6  # of a pair that is searched along a joint, and of the few that this leaves
 DEPTH_BYTES = 16  # of a cell and a range while its distance from those that are worse is found
@@ -223,7 +226,8 @@ class BasePlacementAnalysis(Analysis):
         """Pairs, a bit of each label, and the table of placements."""
         over, K = self.job.over, len(self.targets)
         kept = self._bits_bytes
-        rows = kept + over.count * (8.0 * len(over.ranges) + 12)
+        columns = 8.0 * (len(over.ranges) + len(self.scores) + (self.job.weights is not None)) + 4
+        rows = columns * over.count + self.told_bytes
         drawn, seconds = pictures_cost(*PICTURES, *(["pareto"] if self.job.pareto else []))
         files = DOCUMENT_BYTES + drawn + rows + 7 * LISTED_BYTES * K
         tables = max(COORDINATES_BYTES * over.count, ROW_BYTES * over.count + self._depth_bytes)
@@ -233,14 +237,35 @@ class BasePlacementAnalysis(Analysis):
             over.count * self.job.mounted.mean() / self._alike + (TRIED if self.job.refine else 0) + len(self.margins)
         )
         seconds += TOLERANCE_S if self.job.refine else 0.0
-        seconds += tried * K / self._rate + files / WRITTEN_PER_S
+        seconds += tried * K / self._rate + files / WRITTEN_PER_S + STARTS_S * self._searches
         return Cost(over.count * K, memory, files, seconds, Asks("over", "take larger steps"))
 
     @property
     def _bits_bytes(self) -> float:
         """Of memory for what is known of all placements."""
-        bits = -(-len(self.targets) // 8) * (3 + len(self.names))
-        return self.job.over.count * (bits + 8.0 * len(self.scores))
+        return self.job.over.count * (self._bits + 8.0 * len(self.scores))
+
+    @property
+    def _bits(self) -> int:
+        """Bytes of a placement's labels, of eight targets each."""
+        return -(-len(self.targets) // 8) * (3 + len(self.names))
+
+    @property
+    def _searches(self) -> bool:
+        """Whether targets are expected that closed forms leave to a search for admitted configurations."""
+        if not (self._constrained or self.score):
+            return False
+        closed = [kind.name == "pose" and isinstance(closed_form_of(kind.chain, "pose"), ClosedForm)
+                  for kind in self._kinds]  # fmt: skip
+        pairs = self.job.over.count * len(self.targets) / self._alike
+        return not all(closed) or turns_matter(self.robot.chain, self.names) or pairs * LEFT >= 1
+
+    @property
+    def told_bytes(self) -> float:
+        """Of files for the labels of all placements, and their map."""
+        over = self.job.over
+        cells = math.prod([len(over.values(name)) for name in [*over.ranges][:2]])
+        return BIT_BYTES * self._bits * over.count + CELL_BYTES * cells
 
     @property
     def kept_bytes(self) -> float:
@@ -254,7 +279,7 @@ class BasePlacementAnalysis(Analysis):
         K, places = len(self.targets), self.job.over.count / self._alike
         together = min(places, max(1, PAIRS // (K * self._alike)))
         if self._constrained or self.score:
-            solved = SEARCHED_BYTES + self.program_bytes
+            solved = SEARCHED_BYTES * self._searches + self.program_bytes
         else:
             solved = max(self._solved_bytes(kind, together) for kind in self._kinds)
         return (PLACE_BYTES + PAIR_BYTES * K) * together + solved

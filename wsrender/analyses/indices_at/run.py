@@ -42,6 +42,7 @@ from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
 ROWS_PER_S = 4e5  # of one CPU core
+REASON_BYTES = 100  # of a row: why it is rejected as text, and what is counted of it
 POLYTOPE_BYTES, POLYTOPES_PER_S = 12_000, 50  # two files of a mesh and rows of tables; of one CPU core
 
 
@@ -92,6 +93,9 @@ class IndicesAtAnalysis(Analysis):
         drawn, seconds = pictures_cost("histogram", "scatter")
         files = DOCUMENT_BYTES + drawn + self.q.nbytes + width * numbers + LISTED_BYTES * self.q.size
         memory = self.q.nbytes + (width + 4) * numbers + LISTED_MEMORY * self.q.size + self.program_bytes
+        if self.pipeline.constraints:  # the admitted rows once more, and the reason of each of the others
+            files += self.q.nbytes + width * numbers + 4 * len(self.q)
+            memory += self.q.nbytes + width * numbers + REASON_BYTES * len(self.q)
         memory += label_bytes(SweepPlan(self.pipeline), devices_of(self.device) * thread_count())
         if self.job.polytopes:
             shown, drawing = pictures_cost("surface", "robot")

@@ -20,8 +20,7 @@ from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
 UNREACHABLE, REACHABLE, UNDECIDED, BLOCKED = range(4)  # codes of labels; the k-th constraint blocks with BLOCKED + k
-SPARED_BYTES = 13  # of a base pose in files: a label instead of bits and numbers of targets
-CELL_BYTES, VOXEL_BYTES = 20, 12  # of a cell and of a voxel in files
+CELL_BYTES, VOXEL_BYTES, LABEL_BYTES = 20, 12, 4  # of a cell, a voxel and a label in files
 MADE_BYTES = 60  # of a base pose while its maps are made
 MEASURES = {1: "{:.4g} m", 2: "{:.4g} m²", 3: "{:.4g} m³"}  # of cells, by the number of their axes
 
@@ -65,7 +64,7 @@ class InverseReachabilityAnalysis(Analysis):
         drawn, seconds = pictures_cost("slices", "arm_in_surface") if self._axes == 3 else pictures_cost("placements")
         spared, before = pictures_cost("placements")
         kept = VOXEL_BYTES * cells + surface_bytes(cells) if self._axes == 3 else CELL_BYTES * cells
-        files = own.file_bytes + drawn - spared + kept - SPARED_BYTES * over.count
+        files = own.file_bytes + drawn - spared + kept - self.placements.told_bytes + LABEL_BYTES * over.count
         seconds += own.seconds - before + files / WRITTEN_PER_S
         return replace(own, memory_bytes=own.memory_bytes + MADE_BYTES * over.count, file_bytes=files, seconds=seconds)
 

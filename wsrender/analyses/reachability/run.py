@@ -13,6 +13,7 @@ from wsrender.analyses.cost import (
     LISTED_MEMORY,
     SEARCHED_BYTES,
     SEARCHED_PER_S,
+    STARTS_S,
     WRITTEN_PER_S,
     Asks,
     Cost,
@@ -25,13 +26,15 @@ from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of
 from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.documents.target_lists import TargetTable, TargetVolume
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.reach.inverse_solver import solved_bytes
+from wsrender.reach.inverse_solver import closed_form_of, solved_bytes
 from wsrender.reach.target_list import TargetList, covered, targets_of_job
 from wsrender.reach.targets import Reachability, check_tolerance, evidence_of_targets, reachable_targets
 from wsrender.robot.constraints import constraints_of_job
+from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.table import Table
 
+ADMITTED_PER_S = 4e4  # poses of one core, of which all postures are asked for
 POSES_PER_S = 1.2e4  # of one core, where many are unreachable
 TABLE_BYTES = 60  # of a target in the table beside its configuration
 LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
@@ -80,7 +83,10 @@ class ReachabilityAnalysis(Analysis):
         memory = (8 * width + LISTED_MEMORY * listed) * count + max(solved, (LABEL_BYTES + 16 * n) * count)
         each = count / (POSES_PER_S if oriented else DECIDED_PER_S)
         if self.constraints:
-            memory, each = memory + SEARCHED_BYTES + self.program_bytes, each + count / SEARCHED_PER_S
+            closed = isinstance(closed_form_of(self.robot.chain, kind), ClosedForm) and kind == "pose"
+            rate = ADMITTED_PER_S if closed else SEARCHED_PER_S
+            memory, each = memory + SEARCHED_BYTES + self.program_bytes, each + count / rate
+            seconds += STARTS_S
         seconds += each * (1 + len(self.margins)) + files / WRITTEN_PER_S
         return Cost(count, memory, files, seconds, Asks("points_m", "take fewer"))
 
