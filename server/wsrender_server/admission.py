@@ -167,7 +167,7 @@ def check_models(document: Any, prefix: str = "") -> list[tuple[ArmPath, dict[st
 def check_uploads(store: JobStore, owner: str, uploads: Iterable[tuple[str, str]], prefix: str = "") -> None:
     """Raises HttpProblem 404 for what the owner did not upload: (dotted path, SHA-256) of each."""
     for path, sha256 in uploads:
-        if store.get_model(owner, sha256) is None:
+        if store.model_path(owner, sha256) is None:
             raise HttpProblem(
                 404,
                 f"you have uploaded no model {sha256}",

@@ -38,9 +38,8 @@ class Jobs(Protocol):
         """The workers that answer."""
         ...
 
-    @property
-    def waits_for(self) -> str:
-        """What jobs that are queued wait for."""
+    def waits_for(self, device: str) -> str:
+        """What queued jobs that ask for a device wait for."""
         ...
 
     @property

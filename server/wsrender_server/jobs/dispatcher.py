@@ -81,11 +81,12 @@ class Dispatcher:
         """Whether the thread runs, the scheduler answers and a worker is there."""
         return self._thread.is_alive() and self.engine.connected and bool(self._targets)
 
-    @property
-    def waits_for(self) -> str:
-        """What jobs that are queued wait for."""
+    def waits_for(self, device: str) -> str:
+        """What queued jobs that ask for a device wait for."""
         if not self.engine.connected:
             return f"waiting for {'the workers to start' if self.engine.embedded else 'the scheduler to answer'}"
+        if self._targets and device.partition(":")[0] not in self._targets:
+            return "waiting for a worker with a CUDA GPU"
         return f"waiting for {'a free worker' if self._targets else 'a worker to start'}"
 
     def _loop(self) -> None:
@@ -160,7 +161,8 @@ class Dispatcher:
 
     def _launch_some(self) -> None:
         """Hand out what waits, of much the first; owners take turns."""
-        waiting = sum(not attempt.begun for attempt in self._attempts.values())
+        here = {*self._targets, *self.engine.alive}
+        waiting = sum(not attempt.begun and attempt.target in here for attempt in self._attempts.values())
         most = MOST_LAUNCHES if waiting < AHEAD else FEW_LAUNCHES
         stopping = ComputationState.STOPPING
         ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
@@ -214,11 +216,12 @@ class Dispatcher:
     def _planners(self, kind: str) -> str:
         """Which workers plan for a kind of device, and so choose the target; for "auto" those with GPUs, if any.
 
-        Without workers the plan waits at the scheduler, where whoever starts workers for what waits sees it.
+        Without them the plan waits at the scheduler, where whoever starts workers for what waits sees it; to one's own
+        workers no others come: they say what they lack.
         """
         if kind == "auto" and "cuda" in self._targets:
             return "cuda"
-        return "auto" if self._targets and kind not in self._targets else kind
+        return "auto" if self.engine.embedded and self._targets and kind not in self._targets else kind
 
     def _leave_lost_targets(self) -> None:
         """Begin anew what waits for hardware that has been away for long, while other is there."""

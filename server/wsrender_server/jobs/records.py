@@ -73,7 +73,8 @@ class Progress:
 class JobRecord:
     """A job. ``error`` holds code, message, retryable and where known field.
 
-    ``last_event`` is the id of the job's newest event, ``version`` that of the wsrender that computes it.
+    ``last_event`` is the id of the job's newest event, ``version`` that of the wsrender that computes it; ``device`` is
+    what its document asks for.
     """
 
     id: str
@@ -91,6 +92,7 @@ class JobRecord:
     error: dict[str, Any] | None
     last_event: int
     version: str
+    device: str = "auto"
 
 
 @dataclass(frozen=True)

@@ -121,15 +121,18 @@ class ResultStore:
             if session.scalar(select(Computation.id).where(*needs).limit(1)) is not None:
                 raise InvalidTransition("used by an unfinished job", "deleted", "a model")
             session.delete(model)
-            session.flush()
-            self._forget_model_file(session, sha256)
+        with contextlib.suppress(StoreUnavailable):  # then retention finds it
+            self.forget_model_file(sha256)  # now that nothing brings the row back
         return True
 
     def forget_model_file(self, sha256: str) -> bool:
         """Remove the file of a model that nobody has; False where somebody has it."""
         with self.transactions.write() as session:
             lock_name(session, sha256)
-            return self._forget_model_file(session, sha256)
+            if session.scalar(select(func.count()).where(Model.sha256 == sha256)):
+                return False
+            self.files.model(sha256).unlink(missing_ok=True)
+            return True
 
     def usage(self) -> dict[str, int]:
         """Bytes of all results and of all models."""
@@ -138,12 +141,6 @@ class ResultStore:
             results = session.scalar(select(func.sum(Computation.bytes)).where(succeeded))
             models = session.scalar(select(func.sum(Model.bytes)))
         return {"results": int(results or 0), "models": int(models or 0)}
-
-    def _forget_model_file(self, session: Session, sha256: str) -> bool:
-        if session.scalar(select(func.count()).where(Model.sha256 == sha256)):
-            return False
-        self.files.model(sha256).unlink(missing_ok=True)
-        return True
 
     def _use(self, computation_id: str, used_at: datetime) -> None:
         """Keep that a result is used, every few minutes: reading it must neither wait nor fail for that."""
@@ -191,12 +188,20 @@ class ResultStore:
         if kept + size > most:
             raise QuotaExceeded(f"your models may take {most} bytes, and take {kept}; delete some of them")
 
-    def get_model(self, owner: str, sha256: str) -> bytes | None:
-        """A model that the owner uploaded; None where it is not there, or damaged: it can be sent again."""
+    def model_path(self, owner: str, sha256: str) -> Path | None:
+        """File of a model that the owner uploaded; None where it is not there, or damaged: it can be sent again."""
         with self.transactions.read() as session:
             known = session.get(Model, (owner, sha256)) is not None
         path = self.files.model(sha256)
-        return path.read_bytes() if known and self.files.is_intact(path) else None
+        return path if known and self.files.is_intact(path) else None
+
+    def get_model(self, owner: str, sha256: str) -> bytes | None:
+        """What the file of a model holds, where there is one."""
+        path = self.model_path(owner, sha256)
+        try:
+            return None if path is None else path.read_bytes()
+        except FileNotFoundError:  # it was deleted a moment ago
+            return None
 
 
 def _artifacts(owner: str, job_id: str) -> Select[ArtifactFile]:

@@ -38,10 +38,9 @@ class JobService:
         """The workers there are."""
         return self.dispatcher.engine.workers()
 
-    @property
-    def waits_for(self) -> str:
-        """What jobs that are queued wait for."""
-        return self.dispatcher.waits_for
+    def waits_for(self, device: str) -> str:
+        """What queued jobs that ask for a device wait for."""
+        return self.dispatcher.waits_for(device)
 
     @property
     def scheduler_ready(self) -> bool:

@@ -46,6 +46,7 @@ from wsrender_server.jobs.records import (
 from wsrender_server.jobs.results import ResultStore
 from wsrender_server.jobs.sole_use import SoleUse, bind, locked_folder
 from wsrender_server.jobs.tables import (
+    OF_COMPUTATION,
     ArtifactFile,
     Computation,
     DeviceTarget,
@@ -55,6 +56,7 @@ from wsrender_server.jobs.tables import (
     Model,
     Timestamp,
     job_record,
+    record_of,
     subscribe,
 )
 from wsrender_server.jobs.together import Together
@@ -202,7 +204,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         """A job."""
         with self.transactions.read() as session:
             row = session.execute(
-                select(Job, Computation.version)
+                select(Job, *OF_COMPUTATION)
                 .join(Computation, Job.computation_id == Computation.id)
                 .where(Job.id == job_id, Job.owner == owner)
             ).first()
@@ -230,7 +232,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
 
         Raises InputError for a cursor that this method did not give.
         """
-        query = select(Job, Computation.version).join(Computation, Job.computation_id == Computation.id)
+        query = select(Job, *OF_COMPUTATION).join(Computation, Job.computation_id == Computation.id)
         query = query.where(Job.owner == owner)
         if state is not None:
             query = query.where(Job.state == state)
@@ -245,7 +247,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             query = query.where(tuple_(Job.created_at, Job.id) < place)
         query = query.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit + 1)
         with self.transactions.read() as session:
-            records = [job_record(job, version) for job, version in session.execute(query)]
+            records = [job_record(*row) for row in session.execute(query)]
         more = len(records) > limit
         return records[:limit], cursor_after(records[limit - 1]) if more else None
 
@@ -259,7 +261,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 raise InvalidTransition(job.state, "canceled")
             if job.state in LIVE:
                 self._detach(session, job, computation, JobState.CANCELED)
-            record = job_record(job, computation.version)
+            record = record_of(job, computation)
         self.changes.notify(job_id)
         return record
 
@@ -287,7 +289,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             job.attempt += 1
             job.started_at = job.finished_at = job.progress = None
             subscribe(session, job, computation)
-            record = job_record(job, computation.version)
+            record = record_of(job, computation)
         self.changes.notify(job_id)
         return record
 
@@ -299,7 +301,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 return None
             if job.state not in ENDED:
                 raise InvalidTransition(job.state, "deleted")
-            record = job_record(job, computation.version)
+            record = record_of(job, computation)
             computation_id = computation.id
             for table in (Event, Label):
                 session.execute(delete(table).where(table.job_id == job_id))
@@ -354,7 +356,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         if job.body_hash != request.body_hash:
             raise IdempotencyConflict("the idempotency key was used with another body; send a new key")
         computation = session.get_one(Computation, job.computation_id)
-        return Submission(job_record(job, computation.version), replayed=True)
+        return Submission(record_of(job, computation), replayed=True)
 
     def _enter(self, session: Session, known: "_Known", request: "_Request") -> Submission | str:
         """A new job and, where there is none, its computation; or that whose files are to be checked before."""
@@ -380,7 +382,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in request.labels.items())
         subscribe(session, job, computation)
         cached = job.state == JobState.SUCCEEDED
-        return Submission(job_record(job, __version__), cached=cached, computation=computation.id)
+        return Submission(record_of(job, computation), cached=cached, computation=computation.id)
 
     def _check_queue(self, session: Session, owner: str, known: "_Known | None" = None) -> None:
         """Raise QueueFull where an owner's queue has no place; else one place of those that are ``known`` is taken."""

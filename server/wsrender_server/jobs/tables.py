@@ -21,6 +21,7 @@ from sqlalchemy import (
     Text,
     UniqueConstraint,
     delete,
+    func,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship
 from sqlalchemy.types import TypeDecorator
@@ -179,8 +180,17 @@ class DeviceTarget(Table):
     target: Mapped[str] = mapped_column(String(128))
 
 
-def job_record(job: Job, version: str) -> JobRecord:
-    """The plain value of a row; ``version`` is that of its computation."""
+# Of a job's computation, what its record says; documents of earlier versions have no facts.
+OF_COMPUTATION = Computation.version, func.coalesce(Computation.facts["device"].as_string(), "auto")
+
+
+def record_of(job: Job, computation: Computation) -> JobRecord:
+    """The plain value of a row."""
+    return job_record(job, computation.version, (computation.facts or {}).get("device", "auto"))
+
+
+def job_record(job: Job, version: str, device: str) -> JobRecord:
+    """The plain value of a row, with `OF_COMPUTATION`."""
     return JobRecord(
         id=job.id,
         owner=job.owner,
@@ -197,6 +207,7 @@ def job_record(job: Job, version: str) -> JobRecord:
         error=job.error,
         last_event=job.last_event,
         version=version,
+        device=device,
     )
 
 

@@ -243,13 +243,13 @@ def get_model(
     sha256: ModelId,
 ) -> Response:
     """The text as it was uploaded."""
+    etag = f'"{sha256}"'
+    headers = {"ETag": etag, "Content-Disposition": "attachment"}
+    if has_it(request, etag) and server.store.model_path(principal.owner, sha256) is not None:
+        return Response(status_code=304, headers={"ETag": etag})
     content = server.store.get_model(principal.owner, sha256)
     if content is None:
         raise _model_not_found()
-    etag = f'"{sha256}"'
-    headers = {"ETag": etag, "Content-Disposition": "attachment"}
-    if has_it(request, etag):
-        return Response(status_code=304, headers={"ETag": etag})
     is_text = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
     return Response(content, headers=headers, media_type="application/xml" if is_text else "application/octet-stream")
 

@@ -1,5 +1,6 @@
 """Jobs as JSON."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any, Generic, Self, TypeVar
@@ -129,9 +130,9 @@ class JobView(View):
     """Where else to look."""
 
 
-def job_view(job: JobRecord, waits_for: str) -> JobView:
-    """A job as JSON; ``waits_for`` is what queued jobs wait for."""
-    progress = job.progress if job.state != JobState.QUEUED else replace(job.progress, message=waits_for)
+def job_view(job: JobRecord, waits_for: Callable[[str], str]) -> JobView:
+    """A job as JSON; ``waits_for`` says what queued jobs wait for that ask for a device."""
+    progress = job.progress if job.state != JobState.QUEUED else replace(job.progress, message=waits_for(job.device))
     path, has_result = address(f"/v1/jobs/{job.id}"), job.state == JobState.SUCCEEDED
     return JobView.of(
         job,

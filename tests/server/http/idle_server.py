@@ -29,7 +29,7 @@ class IdleJobs:
     def __init__(self, store: JobStore):
         self.store = store
         self.started = self.scheduler_ready = self.worker_ready = False
-        self.waits_for = "waiting for a free worker"
+        self.waits_for = lambda device: "waiting for a free worker"
 
     def start(self) -> None:
         self.started = self.scheduler_ready = self.worker_ready = True

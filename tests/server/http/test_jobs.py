@@ -37,11 +37,11 @@ def test_what_is_not_there(client, method, path):
 
 
 def test_a_queued_job_says_what_it_waits_for(client, submit, jobs):
-    jobs.waits_for = "waiting for the workers to start"
-    job = submit()
+    jobs.waits_for = "waiting for a worker with {}".format
+    job = submit(device="cuda")
     path = f"/v1/jobs/{job['id']}"
     views = [job, client.get(path).json(), client.get("/v1/jobs").json()["items"][0]]
-    assert {view["progress"]["message"] for view in views} == {jobs.waits_for}
+    assert {view["progress"]["message"] for view in views} == {"waiting for a worker with cuda"}
     jobs.begin(job["id"])
     assert client.get(path).json()["progress"]["message"] == "samples"
 

@@ -101,7 +101,10 @@ def out(store, tmp_path, monkeypatch):
         found.sent += tasks
         return [Future(None, key) for key in tasks]
 
-    dispatcher.engine = SimpleNamespace(submit=submit, stop=lambda tokens, futures: found.stopped.extend(tokens))
+    def stop(tokens, futures):
+        found.stopped += tokens
+
+    dispatcher.engine = SimpleNamespace(submit=submit, stop=stop, alive=set(), connected=True, embedded=True)
     monkeypatch.setattr(dispatcher, "_future_done", lambda *_: None)
     return found
 
@@ -113,7 +116,13 @@ def test_of_much_that_waits_a_part_goes_out_at_a_time_and_owners_take_turns(stor
         store.submit("ann", document_of(number))
     store.submit("bob", document_of(40))
     store.submit("ann", document_of(41), priority=1)
+    for number in range(MOST_LAUNCHES):  # which no worker is there for, and which keep nobody else waiting
+        store.submit("cat", canonical(device="cuda", sampling={"method": "sobol", "count": 64 + number}), priority=2)
+    out.dispatcher._targets, out.dispatcher.engine.embedded = {"auto": "cpu:x", "cpu": "cpu:x"}, False
     out.dispatcher._unfinished(0.0)
+    out.dispatcher._launch_some()
+    assert {attempt.target for attempt in out.dispatcher._attempts.values()} == {"cuda"}
+    out.sent.clear()
     out.dispatcher._launch_some()
     assert len(out.sent) == MOST_LAUNCHES
     record = [store.computation(name.partition("-")[2].partition("-")[0]) for name in out.sent]
@@ -228,6 +237,19 @@ def test_a_plan_waits_for_no_gpu_that_has_gone_where_any_hardware_will_do(store,
     if left:
         dispatcher._launch(computation)
         assert dispatcher._attempts[computation].target == "auto" and len(set(out.sent)) == 2
+
+
+@pytest.mark.parametrize(("embedded", "planners"), [(True, "auto"), (False, "cuda")])
+def test_a_job_for_a_gpu_waits_for_a_worker_that_has_one_where_workers_come(store, out, embedded, planners):
+    """One's own workers are all that come: they say that they have none."""
+    dispatcher = out.dispatcher
+    dispatcher._targets, dispatcher.engine.embedded = {"auto": "cpu:x", "cpu": "cpu:x"}, embedded
+    store.submit("ann", canonical(device="cuda:0"))
+    (computation,) = store.unfinished()
+    dispatcher._launch(computation)
+    assert dispatcher._attempts[computation].target == planners
+    assert dispatcher.waits_for("cuda:0") == "waiting for a worker with a CUDA GPU"
+    assert dispatcher.waits_for("cpu") == dispatcher.waits_for("auto") == "waiting for a free worker"
 
 
 def test_a_job_that_is_canceled_while_the_database_is_away_costs_no_connection(store, document, out, monkeypatch):

@@ -7,6 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from sqlalchemy import event
+from sqlalchemy.exc import OperationalError
 from wsrender_server.jobs import retention as times
 from wsrender_server.jobs.faults import InvalidTransition, QuotaExceeded, StoreUnavailable
 from wsrender_server.jobs.records import JobState
@@ -234,6 +236,22 @@ def test_models_are_listed_and_deleted(store):
     assert store.get_model("ann", first) is None and store.get_model("bob", first) == b"<mujoco/>"
     assert store.delete_model("bob", first) and not store.files.model(first).exists()
     assert [each.sha256 for each in store.list_models("ann")] == [second] and store.list_models("bob") == []
+
+
+def test_a_model_whose_deletion_the_database_did_not_take_keeps_its_file(store):
+    sha256 = store.put_model("ann", b"<mujoco/>")
+
+    def full(connection):
+        raise OperationalError("COMMIT", {}, OSError("database or disk is full"))
+
+    event.listen(store.transactions.engine, "commit", full)
+    try:
+        with pytest.raises(StoreUnavailable):
+            store.delete_model("ann", sha256)
+    finally:
+        event.remove(store.transactions.engine, "commit", full)
+    assert store.get_model("ann", sha256) == b"<mujoco/>"
+    assert store.delete_model("ann", sha256) and not store.files.model(sha256).exists()
 
 
 def test_an_owner_has_a_quota_of_models(store, database):

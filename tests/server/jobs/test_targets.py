@@ -82,3 +82,19 @@ def test_targets_come_and_go(service, settings, tmp_path):
     finally:
         for worker in workers:
             worker.kill_all()
+
+
+def test_a_job_for_a_gpu_waits_for_one_and_says_so(service, settings, tmp_path):
+    worker = ServerProcess(settings, tmp_path, WORK)
+    try:
+        wait_until(lambda: service.dispatcher.alive, what="a worker")
+        if "cuda" in service.dispatcher.engine.targets():
+            pytest.skip("there is a GPU")
+        job = service.store.submit("ann", canonical(**{**LONG, "device": "cuda"})).job
+        assert job.device == "cuda" and service.waits_for(job.device) == "waiting for a worker with a CUDA GPU"
+        other = service.store.submit("ann", canonical(sampling={"method": "sobol", "count": 64}, device="cpu")).job.id
+        in_state(service.store, other, "succeeded")
+        assert service.store.get("ann", job.id).state == "queued"
+        assert service.store.cancel("ann", job.id).state == "canceled"
+    finally:
+        worker.kill_all()

@@ -69,13 +69,13 @@ def test_the_wait_for_a_worker_is_a_setting_and_what_jobs_wait_for_is_said(tmp_p
     with JobService(settings) as service:
         job = service.store.submit("ann", canonical(sampling={"method": "sobol", "count": 64}, device="cpu")).job.id
         time.sleep(4)
-        assert not service.worker_ready and service.waits_for == "waiting for the workers to start"
+        assert not service.worker_ready and service.waits_for("cpu") == "waiting for the workers to start"
         assert service.store.get("ann", job).state == "queued"
     with JobService(settings.model_copy(update={"worker_start_s": 120.0})) as service:
         assert ended(service.store, job).state == "succeeded"
-        assert service.waits_for == "waiting for a free worker"
+        assert service.waits_for("cpu") == "waiting for a free worker"
         assert config.get(LOST_WORKER) == "120.0s"
         for address in service.dispatcher.engine.kernel_pids():
             service.dispatcher.engine._client.retire_workers([address])
-        wait_until(lambda: service.waits_for != "waiting for a free worker", what="the retirement")
-        assert service.waits_for == "waiting for a worker to start"
+        wait_until(lambda: service.waits_for("cpu") != "waiting for a free worker", what="the retirement")
+        assert service.waits_for("cpu") == "waiting for a worker to start"
