@@ -190,12 +190,13 @@ def test_a_native_crash_leaves_the_job_beside_it_running(tmp_path):
 
 def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 7}})
-    job = service.store.submit("ann", document).job.id
-    kept = wait_until(lambda: partial_times(service.settings.data_dir), what="a partial result")
-    os.kill(kernel_pid(service), signal.SIGKILL)
+    submitted, pid = service.store.submit("ann", document), kernel_pid(service)
+    job, mine = submitted.job.id, (service.settings.data_dir, submitted.computation)
+    kept = wait_until(lambda: partial_times(*mine), what="a partial result")
+    os.kill(pid, signal.SIGKILL)
     again = []
     while service.store.get("ann", job).state == "running":
-        now = partial_times(service.settings.data_dir)
+        now = partial_times(*mine)
         again += [name for name in kept if name in now and now[name] != kept[name]]
         time.sleep(0.02)
     assert ended(service.store, job).state == "succeeded" and again == []
@@ -204,13 +205,14 @@ def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
 
 def test_a_process_lost_while_it_merges_costs_no_partial_result(service, tmp_path):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 12}})
-    job = service.store.submit("ann", document).job.id
+    submitted, pid = service.store.submit("ann", document), kernel_pid(service)
+    job, mine = submitted.job.id, (service.settings.data_dir, submitted.computation)
     wait_until(lambda: any((service.settings.data_dir / "scratch").iterdir()), what="the writing of the result")
-    kept = partial_times(service.settings.data_dir)
-    os.kill(kernel_pid(service), signal.SIGKILL)
+    os.kill(pid, signal.SIGKILL)  # at once: it may be about to end
+    kept = partial_times(*mine)
     again = []
     while service.store.get("ann", job).state == "running":
-        now = partial_times(service.settings.data_dir)
+        now = partial_times(*mine)
         again += [name for name in kept if name in now and now[name] != kept[name]]
         time.sleep(0.02)
     assert len(kept) == 17 and again == []  # of 16 shards, and of the refined volume
@@ -303,7 +305,16 @@ def test_a_canceled_job_can_be_retried_and_keeps_its_partial_results(service):
 
 def test_progress_grows_and_ends_at_one(service):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**22, "seed": 9}})
-    job = service.store.submit("ann", document).job.id
+    submitted, pid = service.store.submit("ann", document), kernel_pid(service)
+    job, mine = submitted.job.id, (service.settings.data_dir, submitted.computation)
+    wait_until(lambda: partial_times(*mine), what="a partial result")
+    os.kill(pid, signal.SIGSTOP)  # on a fast machine all would be over before it is recorded
+    try:
+        told = lambda: (progress := service.store.get("ann", job).progress).rate_per_s and progress  # noqa: E731
+        under_way = wait_until(told, what="the rate")
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    assert under_way.samples_total == 2**22 and under_way.eta_s is not None
     seen = []
     while (record := service.store.get("ann", job)).state in ("queued", "running"):
         if not seen or record.progress != seen[-1]:
@@ -311,8 +322,6 @@ def test_progress_grows_and_ends_at_one(service):
         time.sleep(0.05)
     fractions = [progress.fraction for progress in [*seen, record.progress]]
     assert record.state == "succeeded" and fractions == sorted(fractions) and fractions[-1] == 1.0
-    under_way = [progress for progress in seen if progress.rate_per_s]
-    assert under_way and under_way[-1].samples_total == 2**22 and under_way[-1].eta_s is not None
 
 
 def test_an_urgent_job_goes_first(service):

@@ -50,11 +50,11 @@ def local_document(document, folder):
     return comparable(result.document)
 
 
-def partial_times(data_dir):
-    """Modification times of the partial results on disk, by path [ns]."""
+def partial_times(data_dir, computation=""):
+    """Modification times of the partial results on disk, of one computation or of all, by path [ns]."""
     times = {}
     # A computation may end at any moment: os.walk passes over a folder that is gone, unlike Path.glob.
-    for folder, _, names in os.walk(data_dir / "partials"):
+    for folder, _, names in os.walk(data_dir / "partials" / computation):
         for path in (Path(folder, name) for name in fnmatch.filter(names, "[0-9]*.npz")):
             with suppress(FileNotFoundError):
                 times[str(path.relative_to(data_dir))] = path.stat().st_mtime_ns
