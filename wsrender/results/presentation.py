@@ -99,7 +99,7 @@ CURVES = ("scan", "refinements", "scales", "convergence")  # tables that are dra
 _CAPTIONS = {"convergence": "The best value so far"}
 _ROWS = (
     Picture("robot", _PLOTS + "robot", "The arm in its workspace", ("skeleton",),
-            ("samples|meshes|volume",)),
+            ("samples|meshes|volume", "tables")),
     Picture("scatter", _PLOTS + "scatter", "Samples", ("samples",)),
     Picture("slices", _PLOTS + "slices", "Voxels in planes", ("volume",)),
     Picture("histogram", _PLOTS + "histogram", "Distribution of the indices over the samples", ("samples",),

@@ -29,6 +29,7 @@ PRESENTATION = Presentation(
             f"{_HERE}:polytopes",
             "What the tip can do in each direction, at the first configuration that has a polytope",
             needs=("tables.polytopes", "skeleton"),
+            uses=("meshes", "samples", "tables"),
             where=_has_meshes,
         ),
     ),
