@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.results.drawing.okabe_ito import GREEN, ORANGE, VERMILION
 from wsrender.results.result import Result
 from wsrender.results.view import view_of
 from wsrender.results.view import volumes as of_volumes
@@ -147,7 +148,7 @@ def test_labels_are_names():
     assert [(each["value"], each["name"]) for each in channel["categories"]] == [
         (1, "Reachable"), (0, "Unreachable"), (-1, "Undecided"),
     ]  # fmt: skip
-    assert len({each["color"] for each in channel["categories"]}) == 3 and channel["unit"] == ""
+    assert [each["color"] for each in channel["categories"]] == [GREEN, VERMILION, ORANGE] and channel["unit"] == ""
     assert set(numbers(view, entry["occupancy"])) == {1}
     assert numbers(view, channel["data"]).tolist() == [1.0, -1.0, 0.0]
 

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import thinned
 from wsrender.results.drawing.faces import Faces
-from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, VERMILION
+from wsrender.results.drawing.okabe_ito import VERDICTS
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import arm_handles, draw_arm
 from wsrender.results.drawing.style import GREY, Heading, paper_style
@@ -18,10 +18,10 @@ from wsrender.volume.table import Table
 
 # With a mark of its own each: told apart in grey too.
 _MARKS: dict[str, dict[str, Any]] = {
-    "reachable": {"marker": "o", "ms": 5.0, "mfc": GREEN, "mec": "white", "mew": 0.5},
-    "blocked": {"marker": "s", "ms": 5.0, "mfc": BLUE, "mec": "white", "mew": 0.5},
-    "unreachable": {"marker": "x", "ms": 5.0, "mec": VERMILION, "mew": 1.4},
-    "undecided": {"marker": "^", "ms": 6.0, "mfc": ORANGE, "mec": "black", "mew": 0.6},
+    "reachable": {"marker": "o", "ms": 5.0, "mfc": VERDICTS["reachable"], "mec": "white", "mew": 0.5},
+    "blocked": {"marker": "s", "ms": 5.0, "mfc": VERDICTS["blocked"], "mec": "white", "mew": 0.5},
+    "unreachable": {"marker": "x", "ms": 5.0, "mec": VERDICTS["unreachable"], "mew": 1.4},
+    "undecided": {"marker": "^", "ms": 6.0, "mfc": VERDICTS["undecided"], "mec": "black", "mew": 0.6},
 }
 _POINTS = 6000  # of each kind
 _AXES = 400  # targets up to which the direction of the tip is drawn

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERMILION, YELLOW
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERDICTS, VERMILION, YELLOW
 from wsrender.results.view.blobs import Blobs, Encoding, encoded, fitting, is_exact, limits
 from wsrender.results.view.manifest import Category, Channel, Volume
 from wsrender.results.view.words import said, unit_said
@@ -153,7 +153,9 @@ def channel(
 
 
 def _colored(names: Mapping[float, str]) -> list[Category]:
-    return [
-        {"value": value, "name": said(name), "color": COLORS[k % len(COLORS)]}
-        for k, (value, name) in enumerate(names.items())
-    ]
+    """Verdicts in the colours that they have in pictures; other names in those that are left."""
+    own = {name: VERDICTS[name] for name in names.values() if name in VERDICTS}
+    left = [color for color in COLORS if color not in own.values()]
+    others = [name for name in names.values() if name not in own]
+    colors = own | {name: left[k % len(left)] for k, name in enumerate(others)}
+    return [{"value": value, "name": said(name), "color": colors[name]} for value, name in names.items()]
