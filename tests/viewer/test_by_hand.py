@@ -157,6 +157,7 @@ def test_a_folder_comes_into_the_form_as_a_zip(watched: Watched, client: ws.Clie
     dropped(watched, field, ("pair.xml", alone.encode()))
     page.get_by_text("Without files that it names (meshes/m.stl): upload the model's folder as a ZIP").wait_for()
     wide = trimesh.creation.box((0.1, 0.1, 3.0)).export(file_type="stl")
+    assert isinstance(wide, bytes)
     for files, said in (
         ([("a.xml", b""), ("b.stl", b"")], "Several files: drop their folder as a ZIP"),
         ([("meshes.zip", zipped({"m.stl": wide}))], "meshes.zip"),

@@ -44,7 +44,7 @@ def test_limits_locked_joints_and_constraints() -> None:
     assert bodies[1] is not None and moved_to(ws.load_robot("ur5e"), q, bodies[1]) < 1e-12
     constrained = job | {"robot": {"library": "ur5e"}, "constraints": {"self_collision": True}, "sampling": FEW}
     result = ws.execute(constrained)
-    assert result.sample is not None and result.sample.configuration is not None
+    assert result.sample is not None and result.sample.configuration is not None and result.skeleton is not None
     robot, shown = ws.load_robot("ur5e"), result.plot.bodies
     for body, skeleton in zip(shown, result.skeleton, strict=True):
         (k,) = np.flatnonzero(np.abs(robot.skeleton(result.sample.configuration) - skeleton).max(axis=(1, 2)) < 1e-9)
@@ -56,15 +56,17 @@ def test_several_robots_each_have_their_own() -> None:
     job = {"analysis": "shared_workspace", "robots": [{"robot": {"library": "ur5e"}}, second], **SMALL}
     job.pop("indices")
     first, other = ws.execute(job).plot.bodies
+    assert first is not None and other is not None
     robot = ws.load_robot("scara")
     moved = other.vertices - [0.5, 0, 0]
     vertices = np.concatenate([each.vertices for each in link_shapes(robot, robot.chain.within(0.5))])
-    assert first is not None and np.abs(moved - vertices).max() < 1e-12
+    assert np.abs(moved - vertices).max() < 1e-12
 
 
 def test_colours_of_a_model_stay_and_what_is_not_told_is_drawn_as_sticks() -> None:
     result = ws.execute({"analysis": "workspace", "robot": {"mjcf": MESH}, "sampling": FEW, **SMALL})
     (body, *_) = result.plot.bodies
+    assert body is not None and result.skeleton is not None
     assert list(body.colors.values()) == [(0.0, 0.5, 1.0)]
     elsewhere = result.skeleton + np.array([0, 0, 0.1])
     document = result.document
@@ -81,5 +83,6 @@ def test_a_picture_is_of_bodies_where_there_are_any(name: str | None, entries: l
     robot = {"library": name} if name else dh
     figure = ws.execute({"analysis": "workspace", "robot": robot, "sampling": FEW, **SMALL}).plot.robot()
     axes = figure.axes[0]
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == entries
+    legend = axes.get_legend()
+    assert legend is not None and [text.get_text() for text in legend.get_texts()] == entries
     assert len(axes.get_images()) == (3 if name else 0)

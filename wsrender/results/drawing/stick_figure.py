@@ -120,7 +120,7 @@ def in_color(body: Faces, color: str) -> Faces:
 
 def arm_handles(bodies: Sequence[Faces | None] = (None,)) -> list[Artist]:
     """Legend entries of base, joints and tip of arms, or of the tip alone where all have bodies."""
-    marks = [
+    marks: list[Artist] = [
         Line2D([], [], ls="", marker="s", ms=6, mfc=INK, mec="white", label="base"),
         Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.2, label="joint"),
         Line2D([], [], ls="", marker="*", ms=10, mfc=_ACCENT, mec="white", label="tip"),
