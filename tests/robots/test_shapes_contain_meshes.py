@@ -7,6 +7,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.library.from_urdf import links_of
+from tests.robots.model_packages import folders
 from wsrender.robots import library
 
 trimesh = pytest.importorskip("trimesh")
@@ -28,6 +30,17 @@ MESHES = {
     "kuka_kr6_r900_sixx": agilus("kr6r900sixx"),
     "kuka_kr3_r540": [f"{KUKA}/kuka_kr3/meshes/kr3r540/collision/{link}.stl" for link in LINKS],
     "kuka_kr16_2": [f"{KUKA}/kuka_kr16/meshes/kr16_2/collision/{link}.stl" for link in LINKS],
+}
+
+
+# Of URDFs: the folder of their package, the file, the links at the ends of the chain.
+URDFS = {
+    "so100": ("robots", "so_arm_description/urdf/so100.urdf", "base", "gripper"),
+    "so101": ("robots", "so_arm_description/urdf/so101.urdf", "base_link", "gripper_link"),
+    "ur3": ("robots", "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
+    "ur5": ("robots", "ur_description/urdf/ur5_robot.urdf", "base_link", "tool0"),
+    "ur10": ("robots", "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
+    "xarm6": ("pybullet_data", "xarm/xarm6_robot.urdf", "link_base", "link6"),
 }
 
 
@@ -54,7 +67,26 @@ def test_corners_of_the_meshes_are_inside(name):
     folder = Path(spec.origin).parent
     model = mujoco.MjModel.from_xml_path(str(library.find(name)))
     for body, file in zip(("base", *(f"link{k}" for k in range(1, 7))), MESHES[name], strict=True):
-        points = np.asarray(trimesh.load(folder / file, force="mesh").vertices)
-        first, count = model.body(body).geomadr[0], model.body(body).geomnum[0]
-        deepest = np.max([depths(model, geom, points) for geom in range(first, first + count)], axis=0)
-        assert deepest.min() > -1e-6, (body, deepest.min())
+        assert least_depth(model, body, np.asarray(trimesh.load(folder / file, force="mesh").vertices)) > -1e-6, body
+
+
+def least_depth(model, body, points):
+    """How far the outermost of points (N, 3) is inside a body's shapes [m]."""
+    first, count = model.body(body).geomadr[0], model.body(body).geomnum[0]
+    return np.max([depths(model, geom, points) for geom in range(first, first + count)], axis=0).min()
+
+
+@pytest.mark.parametrize("name", URDFS)
+def test_corners_of_a_urdfs_meshes_are_inside(name):
+    package, file, base, tip = URDFS[name]
+    folder = next((folder for folder in folders() if folder.name == package), None)
+    if folder is None:
+        pytest.skip("needs example-robot-data and pybullet, of the extra test-models")
+    model = mujoco.MjModel.from_xml_path(str(library.find(name)))
+    data, T = mujoco.MjData(model), np.eye(4)
+    mujoco.mj_kinematics(model, data)  # all joints at zero: some bodies' frames are not those of this edition's links
+    for link in links_of(folder / file, base, tip)[0]:
+        T, body = T @ link.T_parent, data.body(link.name)
+        for mesh in link.meshes:
+            points = mesh.vertices @ T[:3, :3].T + T[:3, 3]
+            assert least_depth(model, link.name, (points - body.xpos) @ body.xmat.reshape(3, 3)) > -1e-6, link.name
