@@ -12,7 +12,7 @@ from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_the_command_line
 from wsrender.analyses.base_placement.result import PlacementMap
 from wsrender.analyses.jobs import parse_job
-from wsrender.documents.constraints import Apart
+from wsrender.documents.constraints import Apart, Constraints
 from wsrender.documents.placements import COORDINATES, mounted, placed
 from wsrender.robot.collisions import _kept_apart
 from wsrender.robot.constraints import constraints_for
@@ -146,10 +146,39 @@ def test_what_is_proven_is_so_target_by_target_seen_from_each_base(case):
     expected = ws.reachable(robot, positions.reshape(-1, 3), turned, device="cpu", constraints=limits)
     bits = result.tables["placements"]["proven_bits"]
     found = np.unpackbits(bits, axis=1, count=9, bitorder="little").astype(bool)
-    assert (found.ravel() == expected.proven).mean() > 0.99
+    assert (found.ravel() == expected.proven).all()
     assert result.document["placements"]["proven"] == found.sum() and 0.05 < found.mean() < 0.98
     assert not (found & np.isin(labels_of(result), ("served", "undecided"))).any()
     assert (found & (labels_of(result) == "environment")).any() == (case == "all postures")
+
+
+WITHIN = {"region": {"box": {"lower_m": [0.1, None, 0.0]}}}
+
+
+@pytest.mark.parametrize("constraints", [{}, WITHIN])
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "franka_panda", "fanuc_crx10ia"])
+def test_a_pose_has_one_label_and_one_proof_in_every_analysis(name, constraints):
+    """Those of `reachability`: anywhere, with a joint at its limit, with a wrist that is straight, and far out."""
+    robot, random = ws.load_robot(name), np.random.default_rng(5)
+    low, high, each = robot.lower_limits, robot.upper_limits, 60 if name in ("ur5e", "puma560") else 15
+    q = random.uniform(low, high, (4 * each, len(low)))
+    rows, joint = np.arange(each, 2 * each), random.integers(0, len(low), each)
+    q[rows, joint] = np.where(random.random(each) < 0.5, low[joint], high[joint])
+    q[2 * each : 3 * each, 4] = 0.0
+    where = {"x_m": 0.3, "y_m": -0.2, "z_m": 0.1, "yaw_deg": 40}
+    there = robot.placed(ws.Transform(position_m=(0.3, -0.2, 0.1), rpy_deg=(0, 0, 40)))
+    T = there.chain.poses(q)
+    T[3 * each :, :3, 3] *= 1.15
+    quats = Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
+    result = execute(job(name, T[:, :3, 3], quats, over=where, constraints=constraints or None))
+    expected = ws.reachable(
+        there, T[:, :3, 3], quats, device="cpu", constraints=constraints_for(there, Constraints(**constraints))
+    )
+    labels = np.where(expected.labels == "reachable", "served", expected.labels)
+    labels = np.where(labels == "blocked", expected.reasons, labels)
+    assert (labels_of(result)[0] == labels).all()
+    proven = np.unpackbits(result.tables["placements"]["proven_bits"], count=len(q), bitorder="little")
+    assert (proven == expected.proven).all() and 0 < proven.mean() < 1
 
 
 def test_points_of_two_links():
