@@ -157,6 +157,7 @@ StatisticsOrNone = Annotated[
     tuple[Literal["count", "maximum", "mean", "minimum"], ...] | None, BeforeValidator(_statistics_or_none)
 ]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
+Precision = Literal["float32", "float64"]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
 Configurations = Annotated[
     Annotated[tuple[tuple[float, ...], ...], Field(min_length=1)] | ArrayFile,
@@ -184,7 +185,7 @@ class IndexChoices(Document):
     """Whether dynamic indices scale every joint by its largest effort [N m or N]."""
     inertia: Literal["kernel", "mujoco"] = "kernel"
     """What evaluates the joint-space inertia: the kernels, or MuJoCo itself."""
-    precision: Literal["float32", "float64"] = "float32"
+    precision: Precision = "float32"
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

@@ -163,6 +163,7 @@ def quoted(names: Iterable[str]) -> str:
 
 Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
+AngleTolerance = Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)]
 NonNegativeNumber = Annotated[float, Field(ge=0), BeforeValidator(real)]
 # Edge of a voxel [m]: from below the parts of any robot to beyond any, far from overflow. What a robot's size allows
 # within that, `wsrender.volume.lattice` says.

@@ -13,11 +13,11 @@ from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds
 from wsrender.documents.problems import located, worded
 from wsrender.documents.quantities import (
+    AngleTolerance,
     NonNegativeNumber,
     PositiveNumber,
     is_empty,
     is_none,
-    real,
     sequence,
     share,
 )
@@ -33,8 +33,6 @@ NUMBERS = (*POSITION, *QUATERNION, *ANGLES, "weight", *TOLERANCES)
 TEXTS = ("name", "free_axis")
 AXES = ("x", "y", "z")
 UNIT = 1e-3  # by which the length of a quaternion may differ from 1: components of three digits
-
-Angle = Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)]
 
 
 class Target(Document):
@@ -54,7 +52,7 @@ class Target(Document):
     """What it counts in shares."""
     position_tolerance_m: PositiveNumber | None = None
     """Largest distance that counts as reached [m]; null: that of the job."""
-    angle_tolerance_rad: Angle | None = None
+    angle_tolerance_rad: AngleTolerance | None = None
     """Largest angle that counts as reached [rad]; null: that of the job."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:

@@ -1,13 +1,13 @@
 """Targets of an end effector in a job document: points or poses, and how it is decided whether they are reached."""
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from wsrender.documents.document import Document
-from wsrender.documents.options import Device
-from wsrender.documents.quantities import PositiveNumber, Seed, real, rows_of
+from wsrender.documents.options import Device, Precision
+from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, rows_of
 
 SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
 
@@ -26,13 +26,13 @@ class Targets(Document):
     """Orientations of the targets, a quaternion w, x, y, z for each point; null: any orientation will do."""
     position_tolerance_m: PositiveNumber = 1e-5
     """Largest distance to a target that counts as reached [m]."""
-    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-5
+    angle_tolerance_rad: AngleTolerance = 1e-5
     """Largest angle to a target's orientation that counts as reached [rad]."""
     characteristic_length_m: PositiveNumber | None = None
     """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
     seed: Seed = 0
     """Seed of the starts."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

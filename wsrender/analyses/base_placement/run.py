@@ -57,6 +57,7 @@ from wsrender.volume.table import Table
 
 PAIRS = 1 << 20  # of placements and targets that are decided together
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
+NEAR_BALLS_PER_S = 6e3  # the same under constraints, where searches in balls say which are out of reach
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
 BIT_BYTES, CELL_BYTES = 4, 60  # in files: of up to eight labels of a placement, and of a cell of the map
 COORDINATES_BYTES, ROW_BYTES = 144, 62  # of a placement while tables are made of it, and in what is kept of these
@@ -215,7 +216,8 @@ class BasePlacementAnalysis(Analysis):
         form = closed_form_of(kind.chain, kind.name)
         closed = isinstance(form, ClosedForm)
         if self._constrained or self.score:
-            rate = POSTURES_PER_S if closed and kind.name == "pose" else SEARCHED_PER_S
+            rate = NEAR_BALLS_PER_S if form and kind.name == "pose" else SEARCHED_PER_S
+            rate = POSTURES_PER_S if closed and kind.name == "pose" else rate
             return rate / max(1, len(self.scores))
         if form:
             return CLOSED_PER_S if closed else BALLS_PER_S

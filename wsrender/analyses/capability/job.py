@@ -7,8 +7,8 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.options import Device
-from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, is_none, real
+from wsrender.documents.options import Device, Precision
+from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, VoxelSize, integer, is_none, real
 
 LARGEST_SET = 10_000
 
@@ -39,11 +39,11 @@ class CapabilityJob(Constrained, Arm, JobDocument):
     """Least reachability index of the dexterous workspace [1]."""
     position_tolerance_m: PositiveNumber = 1e-5
     """Largest distance to a voxel's centre that counts as reached [m]."""
-    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-3
+    angle_tolerance_rad: AngleTolerance = 1e-3
     """Largest angle to a direction that counts as reached [rad]."""
     seed: Seed = 0
     """Seed of the samples and starts."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

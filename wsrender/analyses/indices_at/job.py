@@ -9,7 +9,7 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.options import Configurations, IndexChoices
+from wsrender.documents.options import Configurations, IndexChoices, Precision
 from wsrender.documents.quantities import distinct, is_empty, sequence
 
 MOST_DRAWN = 20  # configurations whose polytopes are made
@@ -38,7 +38,7 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     polytopes: Polytopes = ()
     """Polytopes of the tip at each of at most 20 configurations, as meshes: "velocity", "force", "acceleration"; in the
     linear rows of the task, and in float64."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the kernels."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:

@@ -1,17 +1,17 @@
 """The job ``inverse_reachability``: from which base poses a robot reaches one target."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import BeforeValidator, Field, StrictBool
+from pydantic import StrictBool
 
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.options import Device
+from wsrender.documents.options import Device, Precision
 from wsrender.documents.placements import Mounting, PlacementSpace
-from wsrender.documents.quantities import PositiveNumber, Seed, real
+from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed
 from wsrender.documents.target_lists import Target
 from wsrender.documents.transform import Transform
 from wsrender.errors import DocumentError
@@ -47,13 +47,13 @@ class InverseReachabilityJob(Constrained, Arm, JobDocument):
     """Whether one yaw alone is decided where others change nothing but the first joint's value."""
     position_tolerance_m: PositiveNumber = 1e-5
     """Largest distance to the target that counts as reached [m]."""
-    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-5
+    angle_tolerance_rad: AngleTolerance = 1e-5
     """Largest angle to the target's orientation that counts as reached [rad]."""
     characteristic_length_m: PositiveNumber | None = None
     """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
     seed: Seed = 0
     """Seed of the starts."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.format import JobDocument
 from wsrender.documents.mechanism import MechanismSpec
-from wsrender.documents.options import Device, IndexOptions, IndicesOrNone, Task
+from wsrender.documents.options import Device, IndexOptions, IndicesOrNone, Precision, Task
 from wsrender.documents.orientations import MOST_ORIENTATIONS, Orientations
 from wsrender.documents.quantities import Count, PositiveNumber, RelativeTolerance, Seed, VoxelSize, real
 from wsrender.documents.robot import Transform, Vector
@@ -64,7 +64,7 @@ class ParallelWorkspaceJob(JobDocument):
     """Seed of the random points."""
     max_poses: Count = 10_000_000_000
     """Largest number of poses that the job may test."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, StrictBool
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.options import IndexChoices, IndicesOrNone
+from wsrender.documents.options import IndexChoices, IndicesOrNone, Precision
 from wsrender.documents.quantities import Number, Seed, integer, real, rows_of, sequence
 from wsrender.documents.target_lists import UNIT, is_none
 
@@ -60,7 +60,7 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """Local indices of every configuration: "kinematic", "dynamic", "all", or a list of names; empty: none."""
     seed: Seed = 0
     """Seed of the starts."""
-    precision: Literal["float32", "float64"] = "float64"
+    precision: Precision = "float64"
     """Floating-point type of the indices; postures are computed in double."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
