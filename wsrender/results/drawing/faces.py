@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsrender.results.drawing.okabe_ito import BLUE, GREEN, PURPLE, SKY_BLUE, VERMILION
+from wsrender.short_repr import short_repr
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ class Faces:
     labels: Mapping[int, str]
     colors: Mapping[int, Color]
     normals: np.ndarray | None = None
+
+    __repr__ = short_repr
 
     @property
     def corners(self) -> np.ndarray:
