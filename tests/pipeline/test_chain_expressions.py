@@ -118,7 +118,7 @@ def test_all_at_once_as_numpy_says(model, away, precision, device, added):
     """Also from a base far from the world's origin, of whose positions single precision holds no millimetres."""
     robot = ws.load_robot(model, placement=ws.Transform(position_m=away, rpy_deg=(20, -35, 70)))
     q, _, twin = swept(robot, "mixed", precision, device)
-    values = mixed(q.T, None, None, **{each: twin._asked(each, q) for each in twin.asks}) - away[0]
+    values = mixed(q.T, None, None, **{each: twin._asked(each, q, None) for each in twin.asks}) - away[0]
     q, rejected, twin = swept(robot, "mixed", precision, device, least=away[0] + np.median(values))
     values -= np.median(values)
     sure = np.abs(values) > NEAR[precision]
