@@ -16,11 +16,11 @@ from wsrender_generated.models import (
     JobView,
     LibraryRobot,
     LibraryRobotLibrary,
-    ModelView,
     PageArtifactView,
     Problem,
     ResultDocument,
     Sobol,
+    UploadedModelView,
     UploadedRobot,
     WorkspaceSubmission,
 )
@@ -78,7 +78,7 @@ def main() -> None:
     print("workspace:", [item.name for item in page.items])
 
     model = upload_model.sync(client=client, body=File(io.BytesIO(MODEL)))
-    assert isinstance(model, ModelView), model
+    assert isinstance(model, UploadedModelView), model
     long = WorkspaceSubmission(robot=UploadedRobot(model=model.sha256), sampling=Sobol(count=10**10), voxel_size_m=0.01)
     canceled = cancel_job.sync(submit(client, long).id, client=client)
     assert isinstance(canceled, JobView), canceled
