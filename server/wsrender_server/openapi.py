@@ -61,6 +61,8 @@ def _type_bodies(operation: dict[str, Any]) -> None:
     """What is neither JSON nor text is binary, and so is XML, whose bytes say how they are to be read."""
     bodies = [operation.get("requestBody", {}), *operation["responses"].values()]
     for media_type, content in (item for body in bodies for item in body.get("content", {}).items()):
+        if media_type == "text/event-stream":  # a schema would be that of each event
+            continue
         if not media_type.endswith("json"):
             content["schema"] = {"type": "string"} if media_type.startswith("text/") else dict(BINARY)
         elif not content.get("schema"):  # a description of messages

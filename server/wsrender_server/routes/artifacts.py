@@ -34,13 +34,13 @@ NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.row
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 _ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
 _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The file, answered with its own media type", "headers": _ETAG, "content": {RAW: _BINARY}},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": {RAW: _BINARY}},
+    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": {"*/*": _BINARY}},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _RESULT_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {"description": "The document", "headers": _ETAG},
-    206: {"description": "The bytes of the range asked for", "headers": _ETAG, "content": {RAW: _BINARY}},
+    206: {"description": "The bytes of the range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")
