@@ -37,7 +37,7 @@ LONG = {
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory):
-    settings = Settings(data_dir=tmp_path_factory.mktemp("data"), shard_samples=1 << 16, max_memory_bytes=2**30)
+    settings = Settings(data_dir=tmp_path_factory.mktemp("data"), shard_samples=1 << 16, max_memory_bytes=3 * 2**29)
     with JobService(settings) as service:
         wait_until(lambda: service.worker_ready, what="a worker")
         yield service
@@ -231,7 +231,7 @@ def test_a_damaged_partial_result_is_computed_again(service, tmp_path):
 
 
 def test_too_much_memory_fails_only_its_own_job(service):
-    # Some 2 GiB: more than a job may have, and less than a machine is refused for that others use too.
+    # Some 2 GiB: more than a job may have here, and less than a machine is refused for that others use too.
     statistics = {"indices": ["manipulability"], "voxel_statistics": ["count", "maximum", "minimum"]}
     fields = {**LONG, **statistics, "voxel_size_m": 0.0075}
     job = ended(service.store, service.store.submit("ann", canonical(**fields)).job.id)
