@@ -11,10 +11,6 @@ from wsrender_server.job_body import body_schemas
 from wsrender_server.problems import Problem
 
 BINARY = {"type": "string", "format": "binary"}
-_RANGE = {
-    "Range": "Bytes of the file, such as bytes=0-1023; one range.",
-    "If-Range": "Entity tag of the file that the range is of; where it is another one, the whole is answered.",
-}
 _HAVE = {"If-None-Match": "Entity tags that the client has; 304 where the file's is among them."}
 
 
@@ -51,8 +47,7 @@ def operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 def _name_headers(operation: dict[str, Any]) -> None:
     """The headers of files, as parameters."""
-    named = (_RANGE if "206" in operation["responses"] else {}) | (_HAVE if "304" in operation["responses"] else {})
-    for name, description in named.items():
+    for name, description in _HAVE.items() if "304" in operation["responses"] else ():
         header = {"name": name, "in": "header", "required": False, "description": description}
         operation.setdefault("parameters", []).append(header | {"schema": {"type": "string"}})
 

@@ -33,9 +33,10 @@ router = APIRouter(prefix="/v1", tags=["results"])
 NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 _ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
+_ANY = {"*/*": _BINARY, "application/json": {}}
 _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": {"*/*": _BINARY}},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
+    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": _ANY},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": _ANY},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _RESULT_RESPONSES: dict[int | str, dict[str, Any]] = {

@@ -111,5 +111,5 @@ def test_bodies_that_are_not_json_are_bytes_or_text(document):
 def test_headers_that_clients_set_are_parameters(document):
     paths = document["paths"]
     named = {each["name"] for each in paths["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]}
-    assert {"Range", "If-Range", "If-None-Match"} <= named
+    assert "If-None-Match" in named
     assert {each["name"] for each in paths["/v1/jobs"]["post"]["parameters"]} == {"Idempotency-Key", "wait"}
