@@ -169,10 +169,10 @@ def test_a_flood_ends_the_session_and_frees_its_process(server):
     with session(server) as socket:
         started = children(server) - before
         assert started
-        with pytest.raises(ConnectionClosed):
+        with contextlib.suppress(ConnectionClosed):  # all may be on their way before the end is seen here
             for k in range(100_000):
                 socket.send(json.dumps({"id": k, **LONG}))
-        assert ended(socket)[1] == 1008
+        assert ended(socket, 20.0)[1] == 1008
         gone(started)
 
 
