@@ -1,6 +1,5 @@
 """The OpenAPI document, as generators of clients need it: whatever the settings, the same operations and names."""
 
-from collections.abc import Iterator
 from typing import Any
 
 from fastapi import FastAPI
@@ -11,7 +10,13 @@ from wsrender_server.job_body import body_schemas
 from wsrender_server.problems import Problem
 
 BINARY = {"type": "string", "format": "binary"}
-_HAVE = {"If-None-Match": "Entity tags that the client has; 304 where the file's is among them."}
+_IF_NONE_MATCH = {
+    "name": "If-None-Match",
+    "in": "header",
+    "required": False,
+    "description": "Entity tags that the client has; 304 where the file's is among them.",
+    "schema": {"type": "string"},
+}
 
 
 def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
@@ -31,25 +36,13 @@ def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
     schemas |= schemas["Problem"].pop("$defs", {})
     for unused in ("HTTPValidationError", "ValidationError"):
         schemas.pop(unused, None)
-    for operation in operations(document):
-        _name_headers(operation)
+    for operation in (operation for path in document["paths"].values() for operation in path.values()):
+        if "304" in operation["responses"]:
+            operation.setdefault("parameters", []).append(_IF_NONE_MATCH)
         _type_bodies(operation)
         if not keys_needed and "security" in operation:
             operation["security"].append({})
     return document
-
-
-def operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Every operation of a document."""
-    for path in document["paths"].values():
-        yield from path.values()
-
-
-def _name_headers(operation: dict[str, Any]) -> None:
-    """The headers of files, as parameters."""
-    for name, description in _HAVE.items() if "304" in operation["responses"] else ():
-        header = {"name": name, "in": "header", "required": False, "description": description}
-        operation.setdefault("parameters", []).append(header | {"schema": {"type": "string"}})
 
 
 def _type_bodies(operation: dict[str, Any]) -> None:

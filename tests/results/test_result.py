@@ -1,3 +1,4 @@
+import gc
 import json
 import subprocess
 import sys
@@ -5,7 +6,9 @@ import sys
 import numpy as np
 import pytest
 import trimesh
+from matplotlib.image import AxesImage
 
+import wsrender as ws
 from tests.results.export.sample_data import assert_same_map, assert_same_volume, random_map, random_volume
 from wsrender.errors import InputError
 from wsrender.results.export.artifacts import sha256
@@ -156,6 +159,21 @@ def test_saving_again_replaces_the_result_and_keeps_other_files(tmp_path):
     assert not names & {"volume.vtkhdf", "volume.csv", "map.csv", "sample.parquet", "surface.glb"}
     assert len(Result.load(folder).map) == 3
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_saved_pictures_keep_no_images(tmp_path):
+    """Not even where nothing collects circles of references: a server's process draws job after job."""
+    result = ws.analyze("scara", ws.Sobol(256), ["manipulability"], device="cpu", refined_volume=None)
+    gc.collect()
+    before = {id(each) for each in gc.get_objects() if isinstance(each, AxesImage)}
+    gc.disable()
+    try:
+        result.save(tmp_path)
+        figure = result.plot.robot()
+        left = [each for each in gc.get_objects() if isinstance(each, AxesImage) and id(each) not in before]
+        assert left and all(each in figure.axes[0].images for each in left)  # of the one that is there alone
+    finally:
+        gc.enable()
 
 
 def test_failed_save_changes_nothing(tmp_path, monkeypatch):

@@ -83,7 +83,8 @@ def test_capsules_lie_along_the_links_and_what_always_meets_is_excluded(case, ra
     for one, T in zip(bodies.shapes, poses, strict=True):
         assert (one.kind, one.size[0]) == ("capsule", radius)
         gaps = [np.linalg.norm(joints - end, axis=1).min() for end in capsule_ends(one, T)]
-        assert slides or max(gaps) < 1e-6  # MuJoCo takes frames that differ by some 1e-7 rad for the same
+        unturned = 1.5e-7 * one.size[1]  # MuJoCo leaves out turns of a geom by less than some 1.4e-7 rad
+        assert slides or max(gaps) < 1e-9 + unturned
     kept = {frozenset(bodies.shapes[k].body for k in pair) for pair in bodies.pairs}
     for one, other in itertools.combinations(dict.fromkeys(shape.body for shape in bodies.shapes), 2):
         geoms = ([shape.geom for shape in bodies.shapes if shape.body == name] for name in (one, other))

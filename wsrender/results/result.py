@@ -410,4 +410,6 @@ def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifac
         write = partial(drawing.write_histogram_csv, plot.samples)
         yield Artifact("plots/histogram.csv", write, frame=None)
     for row in plot.pictures:
-        yield from _files("picture", f"plots/{row.name}", row.drawn(plot), formats)
+        figure = row.drawn(plot)
+        yield from _files("picture", f"plots/{row.name}", figure, formats)
+        figure.clear()  # figures are circles of references: their images would stay until a collector comes for them

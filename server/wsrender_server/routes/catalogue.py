@@ -150,7 +150,7 @@ async def _uploaded_body(request: Request) -> tuple[str, bytes]:
 
 def _type_of(body: bytes) -> str:
     """What a file that no header describes is, by its first bytes; of meshes and tables the jobs that name them see."""
-    if body.startswith(b"PK\x03\x04"):
+    if archives.is_archive(body):
         return ZIP_TYPE
     start = body[:LOOKED_AT].lstrip(codecs.BOM_UTF8).lstrip()
     return XML_TYPES[0] if start.startswith((b"<", codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else ANY_TYPE

@@ -3,8 +3,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from matplotlib.contour import ContourSet
-from matplotlib.path import Path
 
 import wsrender as ws
 from tests.mechanisms.ball_regions import region
@@ -125,14 +123,18 @@ def test_legs_are_counted_from_one(published):
     assert leg_numbers(balls).tolist() == [0, 0]
 
 
+OUTLINE = 2.9  # height (zorder) at which it is drawn
+
+
 def test_the_outline_of_a_smooth_surface_is_whole():
     """No edge lies where a ball turns away from the eye: its outline is drawn all the same, as one closed line."""
     ball = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
     figure = surface_faces(faces_of(ball, None))
     for axes in figure.axes:
-        (outline,) = (each for each in axes.collections if isinstance(each, ContourSet))
+        (outline,) = (each for each in axes.collections if each.get_zorder() == OUTLINE)
         (path,) = outline.get_paths()
-        line = path.vertices[path.codes != Path.CLOSEPOLY]
+        line = path.vertices
+        np.testing.assert_array_equal(line[0], line[-1])
         radius = np.linalg.norm(line - (line.max(axis=0) + line.min(axis=0)) / 2, axis=1)
         assert np.ptp(radius) < 0.02 * radius.mean()
         around = np.sort(np.arctan2(*(line - line.mean(axis=0)).T))

@@ -37,7 +37,7 @@ LONG = {
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory):
-    settings = Settings(data_dir=tmp_path_factory.mktemp("data"), shard_samples=1 << 16, max_memory_bytes=3 * 2**29)
+    settings = Settings(data_dir=tmp_path_factory.mktemp("data"), shard_samples=1 << 16, max_memory_bytes=2**30)
     with JobService(settings) as service:
         wait_until(lambda: service.worker_ready, what="a worker")
         yield service

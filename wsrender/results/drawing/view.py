@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from skimage.measure import find_contours
 
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, NAME_SIZE, NUMBER_SIZE, SeenBox, space_around
 from wsrender.results.drawing.depth import DepthBuffer
@@ -52,10 +53,11 @@ class View:
         """The outline of the surface added last, as it is seen: whole, whether an edge or a smooth side lies there."""
         covered = (self.buffers[-1].nearest >= 0).astype(float)
         height, width = covered.shape
-        padded = np.pad(covered, 1)  # a surface at the border of the picture ends there
-        x = (np.arange(-1, width + 1) + 0.5) / height * 2 - width / height
-        y = 1 - (np.arange(-1, height + 1) + 0.5) / height * 2
-        self.axes.contour(x, y, _rounded(padded), levels=[0.5], **style)
+        padded = _rounded(np.pad(covered, 1))  # a surface at the border of the picture ends there
+        # Not by Axes.contour, which holds the field, 100 MiB and more, for as long as the figure is there.
+        rows = [(line - 0.5) / height * 2 for line in find_contours(padded, 0.5)]  # half heights, of the padding too
+        lines = [np.column_stack([line[:, 1] - width / height, 1 - line[:, 0]]) for line in rows]
+        self.axes.add_collection(LineCollection(lines, **style), autolim=False)
         self._set_limits()
 
     def add_dots(self, points: np.ndarray, colors: Any, size: float, **style: Any) -> None:
