@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
-from tests.analyses.base_placement.test_base_placement import DOWN, RING, bases_of, job, labels_of, seen_from
+from tests.analyses.base_placement.test_base_placement import DOWN, RING, TURNED, bases_of, job, labels_of, seen_from
 from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from wsrender.documents.constraints import Constraints
@@ -99,8 +99,13 @@ def test_a_constraint_blocks_where_all_postures_of_the_robot_there_violate_it(on
     best = values_at(robot, bases, q, inside, admitted).max(axis=2)
     expected = np.select([best > 0.5, best > -0.5], ["served", "own"], "unreachable")
     assert (labels_of(result) == expected).all() and 0.05 < (expected == "own").mean() < 0.5
-    assert result.document["placements"]["alike"] == 1  # such a function may see yaw
     assert (result.tables["targets"]["label"] == "reachable").sum() == (expected == "served").sum(axis=1).max()
+
+
+def test_yaws_are_all_tried_where_a_function_may_see_them():
+    ws.register_constraint("own", elbow_up)
+    for constraints, alike in (({}, 6), ({"own": True}, 1)):
+        assert plan(job("ur5e", RING, [DOWN] * 6, over=TURNED, constraints=constraints))._alike == alike
 
 
 def test_functions_of_all_that_there_is_move_with_the_arm():
