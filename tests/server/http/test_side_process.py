@@ -128,7 +128,7 @@ def estimates(tmp_path, monkeypatch):
     def make(processes):
         made.append(Estimates([SideProcess(2**31, tmp_path) for _ in range(processes)], 60.0))
 
-        async def ask(owner, name, sleep_s=0.0):
+        async def ask(owner, name, sleep_s=0.0, problems=None):
             text = json.dumps({"owner": owner, "name": name, "sleep_s": sleep_s, "path": str(tmp_path / "order")})
             while True:
                 try:
@@ -136,6 +136,8 @@ def estimates(tmp_path, monkeypatch):
                 except HttpProblem as problem:
                     if problem.code != "planning":
                         raise
+                    if problems is not None:
+                        problems.append(problem)
 
         return ask
 
@@ -158,6 +160,21 @@ def test_one_owner_does_not_hold_the_planner_of_all(estimates):
             each.cancel()
 
     asyncio.run(asyncio.wait_for(all_of_them(), 60))
+
+
+def test_who_asks_waits_for_a_plan_of_seconds(estimates, monkeypatch):
+    """As long as clients and proxies wait for an answer; then they are told to ask again."""
+    ask, problems = estimates(1), []
+
+    async def first_answer(sleep_s):
+        began = time.monotonic()
+        assert await ask("ann", f"of {sleep_s} s", sleep_s, problems) == {}
+        return time.monotonic() - began
+
+    assert asyncio.run(first_answer(6.0)) >= 6.0 and problems == []
+    monkeypatch.setattr("wsrender_server.side_process.PATIENCE_S", 0.2)
+    asyncio.run(first_answer(1.0))
+    assert {problem.code for problem in problems} == {"planning"} and all(each.retryable for each in problems)
 
 
 def test_owners_are_planned_for_in_turn(estimates, tmp_path):
