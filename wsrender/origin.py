@@ -13,7 +13,7 @@ from wsrender.version import __version__
 TITLE = "wsrender: workspace analysis of robotic manipulators"
 AUTHORS = "The wsrender developers"
 LICENSE = "Apache-2.0"
-RELEASED = "2026-11-26"
+RELEASED = "2026-11-27"
 # What the indices and maps follow, as far as it is cited in this project's sources.
 PAPER = {
     "title": "WSRender",
