@@ -51,7 +51,7 @@ export function boxOf(volume: Volume): [Vector, Vector] {
 export function Layers({ model }: { model: ViewModel }) {
   const settings = model.settings.value!, manifest = model.manifest.value!;
   const keys: [string, string][] = [
-    ...manifest.robots.map((each, i): [string, string] => [`robot:${i}`, each.name]),
+    ...manifest.robots.map((each, i): [string, string] => [`robot:${i}`, manifest.robots.some((other, k) => k !== i && other.name === each.name) ? `${each.name} (${i + 1})` : each.name]),
     ...[...manifest.meshes, ...manifest.points, ...manifest.glyphs, ...manifest.curves, ...manifest.maps].map((each): [string, string] => [each.name, each.label]),
     ...manifest.skeletons.map((each): [string, string] => [each.name, words(each.name)]),
     ["axes", "Axes"], ["frames", "Frames"], ["scale_bar", "Scale bar"],
