@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.collision.asked import counted
-from wsrender.collision.distance import Distances, frames_of
+from wsrender.collision.distance import Distances
 from wsrender.collision.grids import Lookup
 from wsrender.collision.levers import rates
 from wsrender.collision.solids import Pairs
@@ -104,11 +104,14 @@ class _Pair:
         """
         q = np.tile((self.chain.lower_limits + self.chain.upper_limits) / 2, (len(values), 1))
         q[:, list(self.coordinates)] = values
-        frames = frames_of(self.chain, q)
+        # In the frame that carries the first solid, which no joint before it moves; surfaces stand in the base's.
+        a, b = self.solids[self.a], self.solids[self.b]
+        T = np.tile(np.eye(4), (len(q), 1, 1))
+        for joint in range(a.joint + 1, b.joint + 1):
+            T = T @ self.chain.step(joint, q)
         if self.lookup:
-            return self.lookup.distance(frames[:, self.lookup.joint + 1])
-        T_a, T_b = (frames[:, self.solids[k].joint + 1] @ self.solids[k].T for k in (self.a, self.b))
-        return self.distances.between(self.a, self.b, T_a, T_b, FAR_M) - self.margin
+            return self.lookup.distance(T)
+        return self.distances.between(self.a, self.b, np.broadcast_to(a.T, T.shape), T @ b.T, FAR_M) - self.margin
 
     def label(self, middle: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Of boxes of configurations around their middles (N, c), of widths (c,): FREE, HIT or MIXED (N,)."""

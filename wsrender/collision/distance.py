@@ -78,13 +78,11 @@ class Distances:
 
         data = self._data()
         T_a, T_b = T_a @ self.own[a], T_b @ self.own[b]
-        positions, rotations = np.stack([T_a, T_b], 1)[:, :, :3, 3], np.stack([T_a, T_b], 1)[:, :, :3, :3]
-        rotations = rotations.reshape(-1, 2, 9)
-        at, turned = data.geom_xpos, data.geom_xmat
+        (at_a, turned_a), (at_b, turned_b) = ((data.geom_xpos[k], data.geom_xmat[k].reshape(3, 3)) for k in (a, b))
         found, model = np.empty(len(T_a)), self.model
-        for i in range(len(found)):
-            at[a], at[b] = positions[i]
-            turned[a], turned[b] = rotations[i]
+        rows = zip(T_a[:, :3, 3], T_a[:, :3, :3], T_b[:, :3, 3], T_b[:, :3, :3], strict=True)
+        for i, (position_a, R_a, position_b, R_b) in enumerate(rows):
+            at_a[:], turned_a[:], at_b[:], turned_b[:] = position_a, R_a, position_b, R_b
             found[i] = distance(model, data, a, b, limit, None)
         return self._deep(a, b, T_a, T_b, found)
 

@@ -207,8 +207,8 @@ class _Chosen:
         tests, close = self._below(a, b, "outer", 0, margin)
         if (not alone and OPEN_COST * close.mean() <= tests) or not close.any():
             return 0, None
-        near_at = np.flatnonzero(close) if alone else np.arange(DRAWN)
-        share = len(near_at) / DRAWN
+        near_at = np.flatnonzero(close) if alone else None
+        share = close.mean() if alone else 1.0
         first, open_cost = alone * share or 1.0, OPEN_COST * share
         near = [self._below(a, b, "outer", level, margin, near_at) for level in range(len(LEVELS))]
         hit = [self._below(a, b, "inner", level, margin, near_at) for level in range(len(LEVELS))]
@@ -227,8 +227,7 @@ class _Chosen:
         self, a: int, b: int, side: str, level: int, margin: float, at: np.ndarray | None = None
     ) -> tuple[int, np.ndarray]:
         """Number of tests, and at which (N,) configurations any of them is below the sum of radii."""
-        at = np.arange(DRAWN) if at is None else at
-        below, tests = np.zeros(len(at), bool), 0
+        below, tests = np.zeros(DRAWN if at is None else len(at), bool), 0
         middle_b, half_b, radius_b = self._capsules(b, side, level, at)
         if self.pairs.solids[a].kind == "half_space":
             T = self.pairs.solids[a].T
@@ -247,9 +246,7 @@ class _Chosen:
     def mostly_far(self, pair: int, level: int, epsilon: float) -> list[float]:
         """Of each test outside the squared distance of middles above which none touches, 0 where many are nearer."""
         a, b = self.pairs.pairs[pair]
-        (middle_a, half_a, radius_a), (middle_b, half_b, radius_b) = (
-            self._capsules(k, "outer", level, np.arange(DRAWN)) for k in (a, b)
-        )
+        (middle_a, half_a, radius_a), (middle_b, half_b, radius_b) = (self._capsules(k, "outer", level) for k in (a, b))
         found, everywhere = [], self.pairs.margin(pair) + 2 * epsilon
         for i, k in np.ndindex(len(radius_a), len(radius_b)):
             lengths = np.linalg.norm(half_a[0, i]) + np.linalg.norm(half_b[0, k])
@@ -258,8 +255,10 @@ class _Chosen:
             found.append(far**2 if lengths > 0 and near.mean() < RARELY else 0.0)
         return found
 
-    def _capsules(self, solid: int, side: str, level: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middles and half axes (N, C, 3) in the base's frame, radii (C,)."""
+    def _capsules(
+        self, solid: int, side: str, level: int, at: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Middles and half axes (N, C, 3) in the base's frame, radii (C,); of all configurations or those ``at``."""
         level = 0 if self.covers[solid].exact else level
         key = (solid, side, level)
         if key not in self._placed:
@@ -270,21 +269,22 @@ class _Chosen:
             middle = np.einsum("nij,cj->nci", R, (capsules.a + capsules.b) / 2) + T[:, None, :3, 3]
             self._placed[key] = middle, np.einsum("nij,cj->nci", R, (capsules.b - capsules.a) / 2), capsules.radius
         middle, half, radius = self._placed[key]
-        return middle[at], half[at], radius
+        return (middle, half, radius) if at is None else (middle[at], half[at], radius)
 
 
 def axes_distance(middle_a: np.ndarray, half_a: np.ndarray, middle_b: np.ndarray, half_b: np.ndarray) -> np.ndarray:
     """Distances (N,) of segments given by middles and half axes (N, 3); never below the least (Ericson 2004, 5.1.9)."""
 
     def dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return (x * y).sum(axis=-1)
+        return np.einsum("...i,...i->...", x, y)
 
     r, a, e = middle_a - middle_b, np.maximum(dot(half_a, half_a), SHORT), np.maximum(dot(half_b, half_b), SHORT)
     b, c, f = dot(half_a, half_b), dot(half_a, r), dot(half_b, r)
     s = np.clip((b * f - c * e) / (a * e * 1.000001 - b * b), -1, 1)
     t = np.clip((b * s + f) / e, -1, 1)
     s = np.clip((b * t - c) / a, -1, 1)
-    return np.linalg.norm(r + s[..., None] * half_a - t[..., None] * half_b, axis=-1)
+    apart = r + s[..., None] * half_a - t[..., None] * half_b
+    return np.sqrt(dot(apart, apart))
 
 
 class _Rows:

@@ -111,6 +111,11 @@ class Chain(Kinematics):
             frames.append(T)
         return np.stack([*frames, T @ self.T_tip @ self.T_tip_tool], axis=1)
 
+    def step(self, joint: int, q: np.ndarray) -> np.ndarray:
+        """Frames (N, 4, 4) of a joint after its motion, in that of the joint before it or of the base, at q (N, n)."""
+        moved = self.joint_scale[joint] * q[:, self.joint_source[joint]] + self.joint_offset[joint]
+        return self.T_joint[joint] @ _motions(self.joint_is_revolute[joint], moved)
+
     def poses(self, q: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) of the tool point in the world at ``q`` (N, n), by the host in float64."""
         return self.frames(q)[:, -1]
