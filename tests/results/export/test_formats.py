@@ -97,8 +97,23 @@ def same_mat_volume(path):
 
 def same_csv_volume(path):
     header, *rows = csv.reader(io.StringIO(path.read_text()))
-    assert len(set(header)) == len(header) and len(rows) == VOLUME.n_occupied
-    read = dict(zip(header, np.array(rows, dtype=object).T, strict=True))
+    same_voxels(header, np.array(rows, dtype=object).T)
+
+
+def same_parquet_volume(path):
+    import pyarrow.parquet
+
+    table = pyarrow.parquet.read_table(path)
+    same_voxels(table.column_names, [column.to_numpy() for column in table.columns])
+    units = {field.name: field.metadata[b"unit"].decode() for field in table.schema}
+    assert (units["i"], units["x"], units["count"], units["force_y"]) == ("1", "m", "samples", "N")
+    for (_, index), name in cell_names(VOLUME, {"i", "j", "k", "x", "y", "z", "count"}).items():
+        assert units[name] == VOLUME.units.get(index, "1")
+
+
+def same_voxels(header, columns):
+    assert len(set(header)) == len(header) and len(columns[0]) == VOLUME.n_occupied
+    read = dict(zip(header, columns, strict=True))
     cells = tuple(read[axis].astype(int) - first for axis, first in zip("ijk", VOLUME.first_voxel, strict=True))
     for axis, name in enumerate("xyz"):
         np.testing.assert_allclose(read[name].astype(float), VOLUME.centers(axis)[cells[axis]], rtol=1e-15)
@@ -188,6 +203,7 @@ READ_ELSEWHERE = {
     ("table", "mat"): same_mat_table,
     ("volume", "csv"): same_csv_volume,
     ("volume", "mat"): same_mat_volume,
+    ("volume", "parquet"): same_parquet_volume,
     ("volume", "vti"): same_vti,
     ("drawing", "dxf"): same_dxf,
     ("drawing", "svg"): same_svg_drawing,
@@ -227,23 +243,42 @@ def test_vti_of_any_shape_has_as_many_bytes_as_it_says(tmp_path, shape, monkeypa
     assert data == b"</AppendedData></VTKFile>\n"
 
 
+def test_volumes_with_their_best_samples_are_rows_too(tmp_path):
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    best = {"x": np.arange(60).reshape(5, 4, 3)}
+    volume = VolumeData(0.1, (0, 0, 0), VOLUME.count, {}, {"x": "m"}, best=best)
+    for suffix, read in (("csv", pyarrow.csv.read_csv), ("parquet", pyarrow.parquet.read_table)):
+        formats.by_ending("volume", f"v.{suffix}").write(volume, tmp_path / f"v.{suffix}")
+        column = read(tmp_path / f"v.{suffix}")["best_sample_x"].to_numpy()
+        np.testing.assert_array_equal(column, best["x"][VOLUME.count > 0])
+
+
+def test_what_files_are_converted_to_is_no_part_of_a_result(tmp_path):
+    """A table of the voxels would be read back as one of the result's."""
+    result = ws.Result({"analysis": "workspace"}, volume=VOLUME)
+    result.save(tmp_path / "out", formats=["parquet"])
+    assert not (tmp_path / "out" / "volume.parquet").exists() and not ws.Result.load(tmp_path / "out").tables
+
+
 def test_the_table_is_one():
     rows = formats.table(own=True)
     assert len({(row.kind, row.suffix) for row in rows}) == len(rows)
     kept = [row.kind for row in rows if row.written == "kept"]
     assert sorted(kept) == ["mesh", "skeleton", "table", "volume"]
     assert len({(row.suffix, row.media_type) for row in rows}) == len(formats.suffixes(rows))
-    written = [row.suffix for row in rows if row.written != "asked"]
+    written = [row.suffix for row in rows if row.written in formats.STORED]
     assert len(set(written)) == len(written)  # so that a file's ending says what it holds
     assert all(row.extra == "engine" for row in rows if row.packages)
     assert pickle.loads(pickle.dumps(rows)) == rows
 
 
 def test_conversions_are_between_formats_of_one_kind():
-    can = {row.suffix: list(formats.others(row)) for row in formats.table(own=True) if row.written != "asked"}
+    can = {row.suffix: list(formats.others(row)) for row in formats.table(own=True) if row.written in formats.STORED}
     assert can == {
         "parquet": ["npz", "csv", "mat"],
-        "vtkhdf": ["npz", "csv", "mat", "vti"],
+        "vtkhdf": ["npz", "csv", "parquet", "mat", "vti"],
         "glb": ["ply", "stl", "obj"],
         "ply": ["glb", "stl", "obj"],
         **{suffix: [] for suffix in ("npy", "dxf", "svg", "png", "json")},

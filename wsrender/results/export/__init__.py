@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from wsrender.results.export.mat import write_table_mat, write_volume_mat
     from wsrender.results.export.meshes import GLB_FRAME, read_mesh, write_mesh
     from wsrender.results.export.npz import read_table_npz, read_volume_npz, write_table_npz, write_volume_npz
-    from wsrender.results.export.parquet import read_table_parquet, write_table_parquet
+    from wsrender.results.export.parquet import read_table_parquet, write_table_parquet, write_volume_parquet
     from wsrender.results.export.skeleton import read_skeleton, write_skeleton
     from wsrender.results.export.vti import write_volume_vti
     from wsrender.results.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
@@ -39,6 +39,7 @@ __all__ = [
     "write_volume_csv",
     "write_volume_mat",
     "write_volume_npz",
+    "write_volume_parquet",
     "write_volume_vti",
     "write_volume_vtkhdf",
 ]

@@ -20,6 +20,7 @@ from wsrender.short_repr import short_repr
 
 EXTENSIONS = "wsrender.formats"  # entry points, loaded when the table is first read
 GLB_FRAME = "world, +Y up"
+STORED = ("kept", "always")  # what is written of every result
 
 # What a file may hold, and what its writer gets and its reader returns.
 KINDS = {
@@ -45,7 +46,8 @@ class Format:
     file; ``reader(path)`` returns what was written, equal in every array, name, unit and axis, whatever the name of
     the file; None: only other programs read it. Functions are called in other processes too, so they stand in modules.
     ``packages`` must be importable for both, ``extra`` installs them. ``written``: "kept" formats are in every saved
-    result and what ``Result.load`` reads, "always" beside them, "asked" only by name. ``frame`` is that of coordinates,
+    result and what ``Result.load`` reads, "always" beside them, "asked" only by name; "converted" is never in a result,
+    where it would be taken for another part, but what files are converted to. ``frame`` is that of coordinates,
     where it is not the data's own.
     """
 
@@ -56,7 +58,7 @@ class Format:
     reader: Function | None = None
     packages: tuple[str, ...] = ()
     extra: str | None = None
-    written: Literal["kept", "always", "asked"] = "asked"
+    written: Literal["kept", "always", "asked", "converted"] = "asked"
     frame: str | None = None
 
     __repr__ = short_repr
@@ -113,6 +115,8 @@ _ROWS = [
          "vtkhdf:write_volume_vtkhdf", "vtkhdf:read_volume_vtkhdf", "h5py", written="kept"),
     _own("npz", "volume", "application/x-npz", "npz:write_volume_npz", "npz:read_volume_npz"),
     _own("csv", "volume", "text/csv", "csv:write_volume_csv", None, "pyarrow"),
+    _own("parquet", "volume", "application/vnd.apache.parquet", "parquet:write_volume_parquet", None, "pyarrow",
+         written="converted"),
     _own("mat", "volume", _MATLAB, "mat:write_volume_mat", None, "scipy"),
     _own("vti", "volume", _VTK_XML, "vti:write_volume_vti", None),
     _own("glb", "mesh", "model/gltf-binary", "meshes:write_mesh", "meshes:read_glb", "trimesh",
@@ -179,13 +183,13 @@ def kept(kind: str) -> Format:
 
 def written(kind: str, asked: Iterable[str]) -> list[Format]:
     """The formats in which a kind of thing is written if those of the suffixes ``asked`` are wanted too."""
-    return [row for row in rows(kind) if row.written != "asked" or row.suffix in asked]
+    return [row for row in rows(kind) if row.written in STORED or (row.written == "asked" and row.suffix in asked)]
 
 
 def of_file(name: str) -> Format | None:
     """The format of a file that every saved result may hold; None where only an asked one has its ending."""
     suffix = PurePosixPath(name).suffix.removeprefix(".")
-    return next((row for row in _ROWS if row.suffix == suffix and row.written != "asked"), None)
+    return next((row for row in _ROWS if row.suffix == suffix and row.written in STORED), None)
 
 
 def others(row: Format | None) -> dict[str, Format]:
@@ -217,7 +221,7 @@ def suffixes(of: Iterable[Format]) -> list[str]:
 
 def convertible() -> list[str]:
     """The suffixes that files of results can be converted to."""
-    return suffixes(other for row in table() if row.written != "asked" for other in others(row).values())
+    return suffixes(other for row in table() if row.written in STORED for other in others(row).values())
 
 
 def asked(own: bool = False) -> list[str]:

@@ -1,4 +1,4 @@
-"""Distribution maps and tables ↔ Parquet: plain columns, no dictionary, zstd, byte-stream-split.
+"""Distribution maps and tables ↔ Parquet, volumes → Parquet: plain columns, no dictionary, zstd, byte-stream-split.
 
 Columns of a map are ``x``, ``y``, ``z`` [m, world frame], the joint values by joint name, ``qw``, ``qx``, ``qy``,
 ``qz`` and one per index. Units and roles stand in the schema metadata under ``wsrender``, as JSON.
@@ -16,8 +16,10 @@ from wsrender.errors import InputError
 from wsrender.results.export.atomic import new_file
 from wsrender.results.export.column_type import column_type
 from wsrender.results.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
+from wsrender.results.export.voxel_rows import VoxelRows
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
 
 ROWS_PER_GROUP = 1 << 18
 _METADATA_KEY = DESCRIPTION.encode()
@@ -28,21 +30,26 @@ def write_table_parquet(data: DistributionMap | Table, path: str | Path) -> None
     columns = columns_of(data)
     arrays = arrays_by_column(data, columns)
     schema = _schema(columns, arrays)
-    with (
-        new_file(path) as temporary,
-        pq.ParquetWriter(
-            temporary, schema, compression="zstd", use_dictionary=False, use_byte_stream_split=_split(schema)
-        ) as writer,
-    ):
+    with new_file(path) as temporary, _writer(temporary, schema) as writer:
         for start in range(0, len(data), ROWS_PER_GROUP):
             rows = slice(start, start + ROWS_PER_GROUP)
             batch = [pa.array(np.ascontiguousarray(arrays[name][rows])) for name in schema.names]
             writer.write_batch(pa.RecordBatch.from_arrays(batch, schema=schema))
 
 
-def _split(schema: pa.Schema) -> Any:  # the type stubs know truth values only
-    """The columns that byte-stream-split is for: numbers."""
-    return [f.name for f in schema if pa.types.is_integer(f.type) or pa.types.is_floating(f.type)]
+def write_volume_parquet(volume: VolumeData, path: str | Path) -> None:
+    """Write the occupied voxels, z fastest; columns as of `VoxelRows`, their unit in the metadata of each field."""
+    rows = VoxelRows(volume)
+    with new_file(path) as temporary, _writer(temporary, rows.schema) as writer:
+        for batch in rows.batches(ROWS_PER_GROUP):
+            writer.write_batch(batch)
+
+
+def _writer(path: Path, schema: pa.Schema) -> pq.ParquetWriter:
+    """Byte-stream-split is for numbers."""
+    numbers: Any = [f.name for f in schema if pa.types.is_integer(f.type) or pa.types.is_floating(f.type)]
+    # The type stubs know truth values only.
+    return pq.ParquetWriter(path, schema, compression="zstd", use_dictionary=False, use_byte_stream_split=numbers)
 
 
 def _schema(columns: Any, arrays: dict[str, np.ndarray]) -> pa.Schema:
