@@ -79,6 +79,7 @@ from wsrender_server.routes import (  # noqa: E402
     events,
     keys,
     kinetostatic_stream,
+    numbers,
     operation,
     view,
     view_session,
@@ -88,7 +89,7 @@ from wsrender_server.routes import jobs as job_routes  # noqa: E402
 ROUTERS = [
     module.router
     for module in (
-        *(job_routes, events, artifacts, view, view_session),
+        *(job_routes, events, artifacts, numbers, view, view_session),
         *(catalogue, keys, kinetostatic_stream, operation),
     )
 ]

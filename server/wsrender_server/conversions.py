@@ -1,8 +1,7 @@
-"""Artifacts in other formats, slices and plots on request, made in the side process."""
+"""Artifacts in other formats and plots on request, made in the side process."""
 
 import asyncio
 import json
-import math
 import os
 import tempfile
 import uuid
@@ -11,10 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from wsrender import __version__
-from wsrender.errors import InputError
 from wsrender.notices import entries
 from wsrender.results.export.artifacts import sha256 as sha256_of
 from wsrender.results.export.formats import Format, of_file, others
@@ -29,7 +25,6 @@ from wsrender_server.side_process import SideProcess
 
 MOST_KEPT = 64  # converted files
 TIMEOUT_S = 600.0
-AXES = "xyz"
 
 
 class ConvertedFiles:
@@ -116,98 +111,6 @@ def files_for_plot(result: str, plot: str, names: list[str]) -> list[str]:
     """
     picture = picture_of(result_document(result), plot)
     return files_of_parts((*picture.needs, *picture.uses), names)
-
-
-def slice_values(
-    volume_file: str, axis: str, at: float | None, index: str | None, statistic: str | None
-) -> dict[str, Any]:
-    """The plane of voxels at a coordinate ``at`` [m] along an axis; by default the one with most occupied voxels.
-
-    Returns ``values``, float32 (a, b) over the two other axes in the order x, y, z, NaN where empty; ``origin_m``, the
-    lower corner of its first voxel (2,); ``voxel_size_m``; ``at_m``, the centre of the plane; ``name`` of the array.
-    Raises InputError for a plane outside the volume and an index or statistic that it does not hold.
-    """
-    import h5py
-
-    normal = AXES.index(axis)
-    with h5py.File(volume_file, "r") as file:
-        root: Any = file["VTKHDF"]
-        name = _array_name(root["CellData"], index, statistic)
-        size, first = float(root.attrs["Spacing"][0]), np.asarray(root.attrs["first_voxel"])
-        layer = _layer(root["CellData"]["count"], normal, at, size, int(first[normal]))
-        where: list[Any] = [slice(None)] * 3
-        where[2 - normal] = layer  # files hold z, y, x
-        counts = np.asarray(root["CellData"]["count"][tuple(where)]).T
-        values = np.asarray(root["CellData"][name][tuple(where)]).T.astype(np.float32)
-    values[counts == 0] = np.nan
-    across = [k for k in range(3) if k != normal]
-    return {
-        "values": np.ascontiguousarray(values),
-        "origin_m": [float(first[k] * size) for k in across],
-        "voxel_size_m": size,
-        "at_m": float((first[normal] + layer + 0.5) * size),
-        "name": name,
-    }
-
-
-def voxel_values(volume_file: str, at: tuple[float, float, float]) -> dict[str, Any]:
-    """What the voxel that holds the point ``at`` (3,) [m] holds: ``cell``, ``center_m``, ``count`` and ``values``.
-
-    Raises InputError for a point outside the volume.
-    """
-    import h5py
-
-    with h5py.File(volume_file, "r") as file:
-        root: Any = file["VTKHDF"]
-        size, first = float(root.attrs["Spacing"][0]), np.asarray(root.attrs["first_voxel"])
-        cell = np.floor(np.array(at) / size + 1e-9).astype(np.int64) - first
-        cells = root["CellData"]
-        if (cell < 0).any() or (cell >= cells["count"].shape[::-1]).any():
-            low, high = first * size, (first + cells["count"].shape[::-1]) * size
-            box = ", ".join(f"{a:g} … {b:g}" for a, b in zip(low, high, strict=True))
-            raise InputError("x", f"the point {', '.join(f'{each:g}' for each in at)} is outside the volume, {box} m")
-        x, y, z = cell.tolist()
-        values = []
-        for data in cells.values():
-            told = [("statistic", "index", "")] if "statistic" in data.attrs else []
-            told = [("vector", "vector", axis) for axis in AXES] if "vector" in data.attrs else told
-            for (statistic, name, axis), number in zip(told, np.atleast_1d(data[z, y, x]).tolist(), strict=False):
-                unit = str(data.attrs["unit"])
-                known = {"name": str(data.attrs[name]), "statistic": axis or str(data.attrs[statistic]), "unit": unit}
-                values.append({**known, "value": number if math.isfinite(number) else None})
-        count = int(cells["count"][z, y, x])
-    center = (first + cell + 0.5) * size
-    return {"cell": (x, y, z), "center_m": tuple(center.tolist()), "count": count, "values": values}
-
-
-def _array_name(cells: Any, index: str | None, statistic: str | None) -> str:
-    if statistic == "count":
-        return "count"
-    arrays = {
-        (str(data.attrs["statistic"]), str(data.attrs["index"])): name
-        for name, data in cells.items()
-        if "statistic" in data.attrs
-    }
-    if not arrays and index is None and statistic is None:
-        return "count"
-    order = sorted(arrays, key=lambda key: key[0] != "maximum")  # the maximum first, then as in the file
-    for found in order:
-        if statistic in (None, found[0]) and index in (None, found[1]):
-            return arrays[found]
-    held = ", ".join(["count", *(f"{statistic} of {name}" for statistic, name in arrays)])
-    raise InputError("index", f"the volume has no {statistic or 'statistic'} of {index or 'an index'}; it holds {held}")
-
-
-def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) -> int:
-    layers = counts.shape[2 - normal]
-    if at is None:
-        across = tuple(k for k in range(3) if k != 2 - normal)
-        return int(np.count_nonzero(counts[...], axis=across).argmax())
-    cells = at / size - first
-    if not -1e-9 <= cells <= layers + 1e-9:
-        low, high = first * size, (first + layers) * size
-        raise InputError("at", f"the plane {AXES[normal]} = {at:g} m misses the workspace, {low:g} … {high:g} m")
-    return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
 
 
 def draw(result: str, files: dict[str, str], name: str, format: Format, options: dict[str, Any]) -> bytes:

@@ -48,6 +48,9 @@ def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
 def _type_bodies(operation: dict[str, Any]) -> None:
     """What is neither JSON nor text is binary, and so is XML, whose bytes say how they are to be read."""
     bodies = [operation.get("requestBody", {}), *operation["responses"].values()]
+    for content in (body.get("content", {}) for body in bodies):
+        if "application/json" in content and "application/octet-stream" in content:
+            content["application/json"] = content.pop("application/json")  # generators take the first: the default
     for media_type, content in (item for body in bodies for item in body.get("content", {}).items()):
         if media_type == "text/event-stream":  # a schema would be that of each event
             continue

@@ -59,7 +59,9 @@ def test_from_a_server(package, client, finished, result, tmp_path):
     problem = problem_of(client.get(path, params={"format": "voxels"}), 404, "format_not_available")
     assert problem["detail"] == "map.parquet does not come as voxels; other formats: npz, csv, mat"
     problem = problem_of(client.get(path, params={"format": "odd"}), 422, "invalid_request")
-    assert "should be 'csv', 'glb', 'mat', 'npz', 'obj', 'parquet', 'ply', 'stl', 'voxels' or 'vti'" in problem["detail"]
+    assert (
+        "should be 'csv', 'glb', 'mat', 'npz', 'obj', 'parquet', 'ply', 'stl', 'voxels' or 'vti'" in problem["detail"]
+    )
     parameters = client.get("/openapi.json").json()["paths"]["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]
     (schema,) = (each["schema"] for each in parameters if each["name"] == "format")
     assert "voxels" in json.dumps(schema) and "vti" in json.dumps(schema)

@@ -195,14 +195,6 @@ class ResultStore:
         path = self.files.model(sha256)
         return path if known and self.files.is_intact(path) else None
 
-    def get_model(self, owner: str, sha256: str) -> bytes | None:
-        """What the file of a model holds, where there is one."""
-        path = self.model_path(owner, sha256)
-        try:
-            return None if path is None else path.read_bytes()
-        except FileNotFoundError:  # it was deleted a moment ago
-            return None
-
 
 def _artifacts(owner: str, job_id: str) -> Select[ArtifactFile]:
     return (

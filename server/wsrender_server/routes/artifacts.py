@@ -1,4 +1,4 @@
-"""Results: the document, the files, slices and plots."""
+"""Results: the document, the files and plots."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -6,8 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi import Path as PathParameter
 from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
@@ -15,39 +14,41 @@ from starlette.concurrency import run_in_threadpool
 from wsrender import __version__
 from wsrender.documents.format import FORMAT
 from wsrender.results.export import formats
-from wsrender.results.export.artifacts import part_file
-from wsrender.results.presentation import PLANE, all_pictures
+from wsrender.results.presentation import all_pictures
 from wsrender_server.auth import Reader
-from wsrender_server.conversions import draw, files_for_plot, slice_values
+from wsrender_server.conversions import draw, files_for_plot
 from wsrender_server.hosts import address
 from wsrender_server.jobs.faults import ResultExpired
 from wsrender_server.jobs.records import ENDED, ArtifactRecord, JobRecord, JobState
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.query import OneOf
-from wsrender_server.routes.files import file_response
+from wsrender_server.routes.files import content_response, file_response
 from wsrender_server.routes.job_views import JobId, Page, View, WarningView, found
 
 router = APIRouter(prefix="/v1", tags=["results"])
 
-NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
-_BINARY = {"schema": {"type": "string", "format": "binary"}}
-_ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
-_ANY = {"*/*": _BINARY, "application/json": {}}
+PICTURE = formats.rows("picture", own=True)[0]
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
+_ANY = {"*/*": BINARY, "application/json": {}}
+PARTLY: dict[int | str, dict[str, Any]] = {
+    206: {"description": "The bytes of the range asked for", "headers": ETAG, "content": {"*/*": BINARY}},
+    304: {"description": "The client has it already", "headers": ETAG},
+}
+"""Answers with a part of something large, and to who has it."""
 _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": _ANY},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": _ANY},
-    304: {"description": "The client has it already", "headers": _ETAG},
+    **PARTLY,
+    200: {"description": "The file, of its own media type", "headers": ETAG, "content": _ANY},
+    206: {"description": "The range asked for", "headers": ETAG, "content": _ANY},
 }
 _RESULT_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The document", "headers": _ETAG},
-    206: {"description": "The bytes of the range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
-    304: {"description": "The client has it already", "headers": _ETAG},
+    **PARTLY,
+    200: {"description": "The document", "headers": ETAG},
 }
-_INDEX = Query(max_length=256, description="Name of an index; the first by default.")
-_VOLUME = Query(max_length=256, description="Which volume, where the result has several: name of its file.")
-_STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
-_AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
+INDEX = Query(max_length=256, description="Name of an index; the first by default.")
+STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
+AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
 _SUFFIX = OneOf(lambda: formats.suffixes(formats.rows("picture")))
 Statistic = Literal["count", "maximum", "mean", "minimum"]
 RESULT = "result.json"
@@ -181,78 +182,40 @@ router.add_api_route("/jobs/{job_id:id}/artifacts/{name:path}", get_artifact, me
 
 
 @router.get(
-    "/jobs/{job_id:id}/volume/slice",
-    summary="A plane of voxels",
-    response_class=Response,
-    responses={
-        200: {"description": "The plane", "content": dict.fromkeys((NPY, RAW, PICTURE.media_type), _BINARY)},
-        **problem_responses(401, 403, 404, 406, 409, 422, 429),
-    },
-)
-async def get_slice(
-    server: Server,
-    job: Finished,
-    axis: Annotated[Literal["x", "y", "z"], Query(description="Normal of the plane.")] = "z",
-    at: Annotated[float | None, _AT] = None,
-    index: Annotated[str | None, _INDEX] = None,
-    statistic: Annotated[Statistic | None, _STATISTIC] = None,
-    volume: Annotated[str, _VOLUME] = "volume",
-    accept: Annotated[str, Header(include_in_schema=False)] = "*/*",
-) -> Response:
-    """By Accept: application/x-npy (default), application/octet-stream (float32, little-endian), or image/png.
-
-    The array runs over the two other axes in the order x, y, z, NaN where empty. Headers X-Shape, X-Origin-M (lower
-    corner of its first voxel), X-Voxel-Size-M, X-At-M (centre of the plane) and X-Array say where it is. 404 where the
-    volume does not hold what was asked for.
-    """
-    kind = _best(accept, (NPY, RAW, PICTURE.media_type))
-    file = formats.kept("volume").file(volume)
-    _, path = await run_in_threadpool(artifact_of, server, job, file)
-    if kind == PICTURE.media_type:
-        options = {"axis": axis, axis: at, "index": index, "statistic": statistic}
-        return await _drawn(server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)})
-    with not_found_if_gone(file, path):
-        plane = await or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
-    values: np.ndarray = plane["values"]
-    headers = {
-        "X-Shape": ",".join(map(str, values.shape)),
-        "X-Origin-M": ",".join(map(repr, plane["origin_m"])),
-        "X-Voxel-Size-M": repr(plane["voxel_size_m"]),
-        "X-At-M": repr(plane["at_m"]),
-        "X-Array": plane["name"],
-    }
-    content = values.astype("<f4").tobytes() if kind == RAW else _npy(values)
-    return Response(content, headers=headers, media_type=kind)
-
-
-@router.get(
     "/jobs/{job_id:id}/plots/{plot}",
     summary="Draw a plot",
     response_class=Response,
     responses={
-        200: {"description": "The plot", "content": {row.media_type: _BINARY for row in formats.rows("picture")}},
-        **problem_responses(401, 403, 404, 409, 422, 429),
+        **PARTLY,
+        200: {
+            "description": "The plot",
+            "headers": ETAG,
+            "content": {row.media_type: BINARY for row in formats.rows("picture")},
+        },
+        **problem_responses(401, 403, 404, 409, 416, 422, 429),
     },
 )
 async def get_plot(
     server: Server,
     job: Finished,
+    request: Request,
     plot: Annotated[str, OneOf(lambda: list(all_pictures()))],
     format: Annotated[str, _SUFFIX, Query(description="Format of the picture.")] = PICTURE.suffix,
-    index: Annotated[str | None, _INDEX] = None,
-    statistic: Annotated[Statistic | None, _STATISTIC] = None,
+    index: Annotated[str | None, INDEX] = None,
+    statistic: Annotated[Statistic | None, STATISTIC] = None,
     axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,
-    at: Annotated[float | None, _AT] = None,
+    at: Annotated[float | None, AT] = None,
 ) -> Response:
     """Any picture that results have: the arm in its workspace, sampled positions, planes of voxels, and so on.
 
     404 where the result has no data for it. Its pictures are among its files too, as `plots/<name>.png`.
     """
     options = {"axis": axis, axis or "z": at, "index": index, "statistic": statistic}
-    return await _drawn(server, job, plot, formats.by_ending("picture", f"{plot}.{format}"), options)
+    return await drawn(request, server, job, plot, formats.by_ending("picture", f"{plot}.{format}"), options)
 
 
-async def _drawn(
+async def drawn(
+    request: Request,
     server: Parts,
     job: JobRecord,
     plot: str,
@@ -267,7 +230,7 @@ async def _drawn(
     files = {**await run_in_threadpool(files_of, server, job, wanted), **instead}
     with not_found_if_gone(", ".join(files), *map(Path, (result, *files.values()))):
         content = await or_404(server.side_process.run(draw, result, files, plot, format, options))
-    return Response(content, media_type=format.media_type)
+    return content_response(request, content, format.media_type, {"Vary": "Accept"})
 
 
 def _listed(server: Parts, job: JobRecord) -> tuple[list[str], str]:
@@ -286,12 +249,13 @@ def files_of(server: Parts, job: JobRecord, names: Iterable[str]) -> dict[str, s
 
 
 async def or_404(answer: Any, status: int = 404) -> Any:
-    """What was awaited; a picture or plane of what the result does not hold is not found."""
+    """What was awaited of a request's parameters; a picture or plane of what the result does not hold is not found."""
     try:
         return await answer
     except HttpProblem as error:
         if error.code == "invalid_input":
             error.status = status
+        error.errors = [(pointer.removeprefix("#/"), detail) for pointer, detail in error.errors]  # there is no body
         raise
 
 
@@ -309,6 +273,22 @@ def artifact_of(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecor
     return record, path
 
 
+def data_of(server: Parts, job: JobRecord, kind: str, name: str) -> tuple[ArtifactRecord, Path]:
+    """The file of a table or volume of a result, by its name and the kind of thing, the parameter that it stands in.
+
+    Raises HttpProblem 404 where it has none, with the names of those that it has.
+    """
+    ending = formats.kept(kind).file("")
+    records = {record.name.removesuffix(ending): record for record in server.store.artifacts(job.owner, job.id)
+               if record.name.endswith(ending) and "/" not in record.name}  # fmt: skip
+    path = server.store.artifact_path(job.owner, job.id, f"{name}{ending}") if name in records else None
+    if path is None:
+        detail = f"the result has no {kind} {name[:256]!r}; it has {', '.join(records) or 'none'}"
+        choices = {"choices": list(records)} if records else {}
+        raise HttpProblem(404, detail, "artifact_not_found", errors=[(kind, detail)], extra=choices)
+    return records[name], path
+
+
 @contextmanager
 def not_found_if_gone(name: str, *paths: Path) -> Iterator[None]:
     """Whatever goes wrong with files that were there a moment ago, and are not: they went with their job."""
@@ -322,26 +302,3 @@ def not_found_if_gone(name: str, *paths: Path) -> Iterator[None]:
 
 def _gone(name: str) -> HttpProblem:
     return HttpProblem(404, f"the result has no file {name!r}", "artifact_not_found")
-
-
-def _best(accept: str, kinds: tuple[str, ...]) -> str:
-    """The kind that an Accept header likes best, the first of equals; HttpProblem 406 where it likes none."""
-    weights: dict[str, float] = {}
-    for part in accept.split(","):
-        name, *parameters = (word.strip() for word in part.lower().split(";"))
-        quality = next((word[2:] for word in parameters if word.startswith("q=")), "1")
-        weights[name] = float(quality) if quality.replace(".", "", 1).isdecimal() else 0.0
-    wildcard = weights.get("*/*", 0.0)
-    liked = {kind: weights.get(kind, weights.get(kind.partition("/")[0] + "/*", wildcard)) for kind in kinds}
-    best = max(kinds, key=lambda kind: liked[kind])
-    if liked[best] <= 0:
-        raise HttpProblem(406, f"comes as {', '.join(kinds)}; the request accepts {accept[:200]}")
-    return best
-
-
-def _npy(values: np.ndarray) -> bytes:
-    import io
-
-    file = io.BytesIO()
-    np.lib.format.write_array(file, values, allow_pickle=False)
-    return file.getvalue()

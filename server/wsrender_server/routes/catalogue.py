@@ -19,7 +19,8 @@ from wsrender_server.hosts import address
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.query import Identifier
-from wsrender_server.routes.files import has_it
+from wsrender_server.routes.artifacts import BINARY, ETAG, PARTLY
+from wsrender_server.routes.files import file_response
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
@@ -225,15 +226,14 @@ def _model_not_found() -> HttpProblem:
 
 
 ModelId = Annotated[str, Identifier(64, _model_not_found), Path(description="SHA-256 of the model.")]
-_OCTETS = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
 
 
 @router.get(
     "/models/{sha256}", tags=["models"], summary="Get back a model", response_class=Response,
     responses={
-        200: {"description": "The model", "content": {"application/xml": {"schema": {"type": "string"}}, **_OCTETS}},
-        304: {"description": "The client has it already"},
-        **problem_responses(401, 403, 404, 422),
+        **PARTLY,
+        200: {"description": "The model", "headers": ETAG, "content": {"application/xml": BINARY, ANY_TYPE: BINARY}},
+        **problem_responses(401, 403, 404, 416, 422),
     },
 )  # fmt: skip
 def get_model(
@@ -242,16 +242,16 @@ def get_model(
     request: Request,
     sha256: ModelId,
 ) -> Response:
-    """The text as it was uploaded."""
-    etag = f'"{sha256}"'
-    headers = {"ETag": etag, "Content-Disposition": "attachment"}
-    if has_it(request, etag) and server.store.model_path(principal.owner, sha256) is not None:
-        return Response(status_code=304, headers={"ETag": etag})
-    content = server.store.get_model(principal.owner, sha256)
-    if content is None:
+    """The text as it was uploaded, with Range, If-Range and If-None-Match."""
+    path = server.store.model_path(principal.owner, sha256)
+    if path is None:
         raise _model_not_found()
-    is_text = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
-    return Response(content, headers=headers, media_type="application/xml" if is_text else "application/octet-stream")
+    try:
+        with path.open("rb") as file:
+            is_text = _type_of(file.read(LOOKED_AT)) in XML_TYPES
+        return file_response(request, path, sha256, XML_TYPES[0] if is_text else ANY_TYPE, sha256)
+    except FileNotFoundError:  # it was deleted meanwhile
+        raise _model_not_found() from None
 
 
 @cache

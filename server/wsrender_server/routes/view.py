@@ -12,7 +12,7 @@ from wsrender.errors import ModelError
 from wsrender.results.view.blobs import Encoding
 from wsrender.robots import library
 from wsrender_server.auth import Reader, Submitter
-from wsrender_server.conversions import voxel_values
+from wsrender_server.extracts import voxel_values
 from wsrender_server.job_body import job_body
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
@@ -20,6 +20,7 @@ from wsrender_server.routes.artifacts import (
     RESULT,
     Finished,
     artifact_of,
+    data_of,
     files_of,
     not_found_if_gone,
     or_404,
@@ -149,9 +150,8 @@ async def get_voxel(
     volume: Annotated[str, Query(max_length=256, description="Which volume: name of its file.")] = "volume",
 ) -> VoxelView:
     """What the voxel that holds a point holds, as the file has it; 404 for a point outside the volume."""
-    file = f"{volume}.vtkhdf"
-    _, path = await run_in_threadpool(artifact_of, server, job, file)
-    with not_found_if_gone(file, path):
+    record, path = await run_in_threadpool(data_of, server, job, "volume", volume)
+    with not_found_if_gone(record.name, path):
         return VoxelView.model_validate(await or_404(server.side_process.run(voxel_values, str(path), (x, y, z))))
 
 

@@ -438,6 +438,7 @@ def builtin(kind: str, params: str, name: str = "m") -> str:
 def others(job: str, model: str) -> Iterator[Case]:
     """What belongs to somebody else, asked for by its name, and rights that a key does not have."""
     routes = ["", "/events", "/result", "/artifacts", "/artifacts/result.json", "/volume/slice?axis=z", "/plots/robot",
+              "/volume?format=npz", "/tables/sample", "/histogram",
               "/view", "/view/blobs/volume0", "/volume/voxel?x=0&y=0&z=0"]  # fmt: skip
     for route in routes:
         yield foreign(f"GET of another's job{route}", "GET", f"/v1/jobs/{job}{route}")

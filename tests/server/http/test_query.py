@@ -72,7 +72,7 @@ def test_interactive_sessions_too(client, route):
 def test_a_plane_by_another_name_and_a_state_by_another_name(client, finished):
     assert client.get(f"{finished}/volume/slice", params={"axis": "z"}).status_code == 200
     problem = problem_of(client.get(f"{finished}/volume/slice", params={"z": 0.3}), 422, "invalid_request")
-    assert problem["choices"] == ["at", "axis", "index", "statistic", "volume"]
+    assert problem["choices"] == ["at", "axis", "format", "index", "statistic", "volume"]
     problem_of(client.get("/v1/jobs", params={"stat": "failed"}), 422, "invalid_request")
     problem_of(client.get(f"{finished}/events", params={"after": 3}), 422, "invalid_request")
 

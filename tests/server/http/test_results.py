@@ -59,7 +59,8 @@ def test_a_long_document_takes_no_memory_of_the_server(client, jobs, finished, v
 
 def test_no_result_yet(client, submit):
     path = f"/v1/jobs/{submit()['id']}"
-    for rest in ("/result", "/artifacts", "/artifacts/result.json", "/volume/slice", "/plots/robot"):
+    files = ("/result", "/artifacts", "/artifacts/result.json", "/plots/robot")
+    for rest in (*files, "/volume", "/volume/slice", "/tables/sample", "/histogram"):
         assert problem_of(client.get(path + rest), 409, "no_result")["retryable"]
 
 
@@ -86,10 +87,10 @@ def test_every_file_is_listed_and_arrives_unchanged(client, finished, result_fol
         ("bytes=-5", slice(-5, None)),
         ("bytes=5-999999999", slice(5, None)),
         ("bytes=0-1,4-5", None),
-        ("bytes=9-5", None),
+        ("bytes = 3 - 7", slice(3, 8)),
+        ("bytes=3-" + "9" * 5000, slice(3, None)),
+        ("bytes=0-1, 4-", None),
         ("lines=1-2", None),
-        ("bytes=" + "9" * 100 + "-", None),
-        ("nonsense", None),
     ],
 )
 def test_ranges(client, finished, result_folder, asked, expected):
@@ -104,10 +105,21 @@ def test_ranges(client, finished, result_folder, asked, expected):
 
 def test_a_range_beyond_the_file(client, finished, result_folder):
     size = (result_folder / "map.parquet").stat().st_size
-    for asked in (f"bytes={size}-", "bytes=-0"):
+    for asked in (f"bytes={size}-", "bytes=-0", "bytes=" + "9" * 100 + "-", "bytes=" + "9" * 5000 + "-"):
         response = client.get(f"{finished}/artifacts/map.parquet", headers={"Range": asked})
-        problem_of(response, 416, "range_not_satisfiable")
+        problem = problem_of(response, 416, "range_not_satisfiable")
         assert response.headers["content-range"] == f"bytes */{size}"
+        assert problem["errors"][0]["pointer"] == "Range" and f"there are {size} bytes" in problem["detail"]
+
+
+@pytest.mark.parametrize("asked", ["bytes=9-5", "bytes=-", "bytes=", "bytes", "nonsense", "bytes=a-b", "bytes=1--2"])
+def test_a_range_that_is_none_is_told(client, finished, asked):
+    for path in ("artifacts/map.parquet", "result", "volume", "volume/slice", "plots/slice", "view"):
+        problem = problem_of(client.get(f"{finished}/{path}", headers={"Range": asked}), 416, "range_not_satisfiable")
+        (fault,) = problem["errors"]
+        assert fault["pointer"] == "Range" and asked in fault["detail"] and "bytes=0-99" in fault["detail"]
+    whole = client.get(f"{finished}/artifacts/map.parquet", headers={"Range": asked, "If-Range": '"another"'})
+    assert whole.status_code == 200
 
 
 def test_a_download_goes_on_only_with_the_same_file(client, finished):

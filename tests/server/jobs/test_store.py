@@ -440,7 +440,7 @@ def test_robots_by_path_are_refused(store):
 def test_models_belong_to_their_owner(store):
     sha256 = store.put_model("ann", b"<mujoco/>")
     assert store.put_model("ann", b"<mujoco/>") == sha256
-    assert store.get_model("ann", sha256) == b"<mujoco/>" and store.get_model("bob", sha256) is None
+    assert store.model_path("ann", sha256).read_bytes() == b"<mujoco/>" and store.model_path("bob", sha256) is None
     with pytest.raises(InputError, match=r"robot\.model"):
         store.submit("bob", canonical(robot={"model": sha256}))
     assert store.submit("ann", canonical(robot={"model": sha256})).job.state == JobState.QUEUED
@@ -451,7 +451,7 @@ def test_a_model_sent_many_times_at_once_is_kept_once(store):
     with ThreadPoolExecutor(8) as pool:
         (sha256,) = set(pool.map(lambda _: store.put_model("ann", content), range(24)))
     assert [path.name for path in (store.files.root / "models").iterdir()] == [sha256]
-    assert store.get_model("ann", sha256) == content
+    assert store.model_path("ann", sha256).read_bytes() == content
 
 
 def test_keys_are_found_until_revoked(store):

@@ -1,8 +1,9 @@
 """How the values of each index are spread over the samples."""
 
 import csv
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -77,24 +78,38 @@ def _in_width(label: str) -> str:
 
 def write_histogram_csv(samples: DistributionMap, path: str | Path) -> None:
     """Write what ``histogram`` shows: index, unit, lower and upper edge, share of the samples."""
+    found = ((name, samples.units.get(name, ""), values) for name, values in samples.indices.items())
     with Path(path).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["index", "unit", "lower", "upper", "share"])
-        for name, values in samples.indices.items():
-            edges, share = histogram_data(values)
-            unit = samples.units.get(name, "")
-            for low, high, part in zip(edges[:-1].tolist(), edges[1:].tolist(), share.tolist(), strict=True):
-                writer.writerow([name, unit, low, high, part])
+        write_histograms(file, ((name, unit, *histogram_data(values)) for name, unit, values in found))
 
 
-def histogram_data(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def write_histograms(file: TextIO, histograms: Iterable[tuple[str, str, np.ndarray, np.ndarray]]) -> None:
+    """Write rows of index, unit, lower and upper edge, share; of each index its unit, edges (n+1,) and share (n,)."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["index", "unit", "lower", "upper", "share"])
+    for name, unit, edges, share in histograms:
+        for low, high, part in zip(edges[:-1].tolist(), edges[1:].tolist(), share.tolist(), strict=True):
+            writer.writerow([name, unit, low, high, part])
+
+
+def histogram_data(
+    values: np.ndarray, bins: int | None = None, lower: float | None = None, upper: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Edges (51,) in the unit of the index and share of the values (50,) in each interval; fewer of few values.
 
-    Values that are the same but for rounding are one interval, from the least to the largest: (2,) and (1,).
+    ``bins``: how many intervals instead; ``lower`` and ``upper``: the first and last edge, by default the least and the
+    largest value. Values that are the same but for rounding are one interval: (2,) and (1,). Shares are of all values.
+    Raises InputError, naming the limit, where none can be between the edges.
     """
-    low, high = float(values.min()), float(values.max())
+    low, high = (float(values.min()) if lower is None else lower), (float(values.max()) if upper is None else upper)
+    if low > high:
+        if lower is None:
+            raise InputError("upper", f"must be at least {low:g}, the least value, not {high:g}")
+        raise InputError(
+            "lower", f"must be at most {high:g}, {'the largest value' if upper is None else 'upper'}, not {low:g}"
+        )
     if high - low <= ROUNDING * max(abs(low), abs(high)):
-        return np.array([low, high]), np.ones(1)
-    bins = min(max(len(values) // PER_BIN, FEWEST_BINS), BINS)
+        return np.array([low, high]), np.array([np.mean((values >= low) & (values <= high))])
+    bins = bins or min(max(len(values) // PER_BIN, FEWEST_BINS), BINS)
     counts, edges = np.histogram(values.astype(np.float64), bins, (low, high))
     return edges, counts / len(values)

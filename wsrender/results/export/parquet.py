@@ -4,7 +4,8 @@ Columns of a map are ``x``, ``y``, ``z`` [m, world frame], the joint values by j
 ``qz`` and one per index. Units and roles stand in the schema metadata under ``wsrender``, as JSON.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import pyarrow.parquet as pq
 from wsrender.errors import InputError
 from wsrender.results.export.atomic import new_file
 from wsrender.results.export.column_type import column_type
-from wsrender.results.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
+from wsrender.results.export.columns import DESCRIPTION, MapColumns, arrays_by_column, columns_from_json, columns_of
 from wsrender.results.export.voxel_rows import VoxelRows
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -64,20 +65,60 @@ def read_table_parquet(path: str | Path) -> DistributionMap | Table:
 
     Raises InputError where the file is not Parquet, not of wsrender or damaged.
     """
+    with _opened(path) as file:
+        return _read(file, Path(path).name)
+
+
+def rows_in(path: str | Path) -> tuple[int, dict[str, str]]:
+    """How many rows a map or table has, and the unit of each column ("1": none), by the file's end alone."""
+    with _opened(path) as file:
+        units = {field.name: (field.metadata or {}).get(b"unit", b"1").decode() for field in file.schema_arrow}
+        return file.metadata.num_rows, units
+
+
+def read_rows(path: str | Path, names: Sequence[str], start: int, stop: int) -> pa.Table:
+    """Some columns of the rows ``start`` to ``stop`` of a map or table; other row groups are not read."""
+    with _opened(path) as file:
+        found, first = [file.schema_arrow.empty_table().select(names)], 0
+        for group in range(file.num_row_groups):
+            end = first + file.metadata.row_group(group).num_rows
+            if start < end and first < stop:
+                part = file.read_row_group(group, columns=list(names)).select(names)
+                found.append(part.slice(max(start - first, 0), min(stop, end) - max(start, first)))
+            first = end
+        return pa.concat_tables(found)
+
+
+def index_values(path: str | Path, index: str | None = None) -> tuple[str, str, np.ndarray]:
+    """Name, unit and values (N,) of an index of a map, the first by default; no other column is read.
+
+    Raises InputError for an index that the map does not have.
+    """
+    with _opened(path) as file:
+        columns = columns_from_json((file.schema_arrow.metadata or {})[_METADATA_KEY], Path(path).name)
+        held = columns.indices if isinstance(columns, MapColumns) else {}
+        name = next(iter(held), None) if index is None else index
+        if name is None or name not in held:
+            raise InputError("index", f"the samples have no {name or 'index'}; they have {', '.join(held) or 'none'}")
+        return name, columns.units.get(name, ""), _block(file, [held[name]])[:, 0]
+
+
+@contextmanager
+def _opened(path: str | Path) -> Iterator[pq.ParquetFile]:
+    """A file of ``write_table_parquet``. Raises InputError."""
     path = Path(path)
     try:
         with pq.ParquetFile(path) as file:
-            return _read(file, path.name)
+            if _METADATA_KEY not in (file.schema_arrow.metadata or {}):
+                raise InputError(path.name, "is a Parquet file, but not a map or table written by wsrender")
+            yield file
     except (pa.ArrowException, OSError) as error:
         raise InputError(path.name, f"cannot be read as a table: {error}") from error
 
 
 def _read(file: pq.ParquetFile, source: str) -> DistributionMap | Table:
     schema = file.schema_arrow
-    metadata = schema.metadata or {}
-    if _METADATA_KEY not in metadata:
-        raise InputError(source, "is a Parquet file, but not a map or table written by wsrender")
-    columns = columns_from_json(metadata[_METADATA_KEY], source)
+    columns = columns_from_json(schema.metadata[_METADATA_KEY], source)
     missing = set(columns.names()) - set(schema.names)
     if missing:
         raise InputError(source, f"lacks the columns {', '.join(sorted(missing))}")
