@@ -1,6 +1,7 @@
 """The OpenAPI document: complete, and as strict as the server."""
 
 import json
+import re
 
 import pytest
 from wsrender_server.job_body import EXAMPLES, body_schemas
@@ -108,8 +109,14 @@ def test_bodies_that_are_not_json_are_bytes_or_text(document):
                         assert schema, (path, media_type)
 
 
-def test_headers_that_clients_set_are_parameters(document):
+def test_headers_that_clients_set_are_parameters(client, document):
     paths = document["paths"]
     named = {each["name"] for each in paths["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]}
     assert "If-None-Match" in named
-    assert {each["name"] for each in paths["/v1/jobs"]["post"]["parameters"]} == {"Idempotency-Key", "wait"}
+    parameters = {each["name"]: each for each in paths["/v1/jobs"]["post"]["parameters"]}
+    assert set(parameters) == {"Idempotency-Key", "wait"}
+    schema = parameters["Idempotency-Key"]["schema"]
+    for key, accepted in {"a": True, "a b": True, "~" * 255: True, "": False, "a\t": False, "~" * 256: False}.items():
+        assert (bool(re.search(schema["pattern"], key)) and len(key) <= schema["maxLength"]) == accepted
+        answer = client.post("/v1/jobs", json={}, headers={"Idempotency-Key": key})
+        assert ("Idempotency-Key" in answer.text) != accepted
