@@ -2,28 +2,17 @@
 
 import re
 from pathlib import Path
-from shutil import copytree
 
 import wsrender as ws
+from tests.snippets import CLONE, blocks, run
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import job_classes
-from wsrender.indices import index_catalogue
 
-CLONE = Path(__file__).parents[1]
 README = (CLONE / "README.md").read_text(encoding="utf-8")
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
-
-
 def test_python_example(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(index_catalogue, "_ADDED", {})
-    copytree(CLONE / "docs" / "examples", tmp_path / "docs" / "examples")
-    example = "\n".join(blocks("python"))
-    names = {}
-    exec(compile(example, "README.md", "exec"), names)
+    names = run(CLONE / "README.md", tmp_path, monkeypatch)
     assert "manipulability" in capsys.readouterr().out
     assert (tmp_path / "slice.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "out" / "result.json").is_file()
@@ -33,7 +22,7 @@ def test_python_example(tmp_path, monkeypatch, capsys):
 
 
 def test_job_document():
-    (example,) = blocks("json")
+    (example,) = blocks(README, "json")
     assert parse_job(example).robot.library == "phantom_omni"
 
 
