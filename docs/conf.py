@@ -3,11 +3,14 @@
 Pages are Markdown. Their Python snippets are run by ``tests/test_docs.py``.
 """
 
+import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
+
+from gallery_shown import Shown  # noqa: E402
 
 from wsrender.version import __version__  # noqa: E402
 
@@ -22,9 +25,11 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx_design",
+    "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
 ]
-exclude_patterns = ["_extensions", "examples"]
+exclude_patterns = ["_extensions", "examples", "gallery", "generated/**/*.ipynb", "generated/extra"]
+suppress_warnings = ["config.cache"]  # the gallery's scraper is an object
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types of other packages: their sites are not asked
 
@@ -45,4 +50,28 @@ html_theme_options = {
     "show_toc_level": 2,
     "footer_start": ["copyright"],
     "footer_end": [],
+}
+
+# The gallery's scripts, run in alphabetical order. WSRENDER_GALLERY: names of those to run, apart by commas; without it
+# all are, and where it is empty none.
+EXTRA = HERE / "generated" / "extra"  # what is copied to the site as it is
+EXTRA.mkdir(parents=True, exist_ok=True)
+html_extra_path = [str(EXTRA.relative_to(HERE))]
+_chosen = os.environ.get("WSRENDER_GALLERY")
+_names = "|".join(name for name in (_chosen or "").split(",") if name) or "(?!)"
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery"],
+    "gallery_dirs": ["generated/gallery"],
+    "subsection_order": [f"gallery/{name}" for name in ("reach", "cell", "targets", "arms", "mechanisms", "practice")],
+    "within_subsection_order": "FileNameSortKey",
+    "filename_pattern": "/plot_" if _chosen is None else f"/({_names})\\.py$",
+    "image_scrapers": (Shown(EXTRA / "views"),),
+    "reset_modules": (),
+    "capture_repr": ("_repr_html_",),
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 1e9,
+    "plot_gallery": "True",
 }
