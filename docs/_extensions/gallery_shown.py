@@ -21,10 +21,10 @@ from wsrender.results.view.page import embedded
 _SAID = re.compile(r"^# Picture: (.+(?:\n# .+)*)", re.MULTILINE)
 _DPI = 110
 _PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title><link rel="icon" href="data:,"><style>html, body {{ margin: 0; color-scheme: light dark; }}</style>
-</head><body>{view}</body></html>
+<html lang="en">
+<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{title}</title>
+<link rel="icon" href="data:,"><style>html, body {{ margin: 0; color-scheme: light dark; }}</style></head>
+<body>{view}</body></html>
 """
 _FRAME = """
 .. raw:: html

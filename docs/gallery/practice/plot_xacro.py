@@ -35,5 +35,5 @@ for reach in ("0.3", "0.4"):
     result = ws.analyze(robot, ws.Grid(40), ["manipulability"], device="cpu")
     print(reach, "m:", f"{result.document['headline']['value']:.3f} m³")
 
-# Picture: Planes through the workspace of the longer arm: a part of a shell in front of and behind the base.
+# Picture: Planes through the workspace of the longer arm: a part of a shell around the axis, open below.
 result.plot.slices()
