@@ -43,6 +43,8 @@ html_title = "wsrender"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = html_show_sourcelink = False
+html_favicon = "_static/icon.svg"
+html_context = {"default_mode": "auto"}  # otherwise the theme reports a mode that is none
 html_theme_options = {
     "logo": {"text": "wsrender"},
     "navbar_end": ["theme-switcher"],
@@ -52,12 +54,12 @@ html_theme_options = {
     "footer_end": [],
 }
 
-# The gallery's scripts, run in alphabetical order. WSRENDER_GALLERY: names of those to run, apart by commas; without it
+# The gallery's scripts, run in alphabetical order. DOCS_GALLERY: names of those to run, apart by commas; without it
 # all are, and where it is empty none.
 EXTRA = HERE / "generated" / "extra"  # what is copied to the site as it is
 EXTRA.mkdir(parents=True, exist_ok=True)
 html_extra_path = [str(EXTRA.relative_to(HERE))]
-_chosen = os.environ.get("WSRENDER_GALLERY")
+_chosen = os.environ.get("DOCS_GALLERY")
 _names = "|".join(name for name in (_chosen or "").split(",") if name) or "(?!)"
 sphinx_gallery_conf = {
     "examples_dirs": ["gallery"],
