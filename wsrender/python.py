@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 def analyze(
     robot: RobotLike,
     sampling: SamplingLike | None = Sobol(count=16_777_216),
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = "kinematic",
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
     *,
     base: str | None = None,
@@ -88,7 +88,7 @@ def analyze(
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
     ``sampling``: How the joint space is sampled; by default 2^24 Sobol samples, with a map 2^20.
-    ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
+    ``indices``: Local indices: "kinematic", "dynamic", "all", the name of an index, or a list of names.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
@@ -139,7 +139,7 @@ def indices_at(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
     characteristic_length_m: float = 1.0,
@@ -167,7 +167,7 @@ def indices_at(
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
-    ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
+    ``indices``: Local indices: "kinematic", "dynamic", "all", the name of an index, or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
     ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
@@ -219,7 +219,8 @@ def reachability(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
+        given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
@@ -255,7 +256,7 @@ def all_postures(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = (),
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = (),
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
     characteristic_length_m: float = 1.0,
@@ -381,7 +382,7 @@ def shared_workspace(
     constraints: ArmsConstraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
     characteristic_length_m: float = 1.0,
@@ -410,7 +411,7 @@ def shared_workspace(
         all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
-    ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
+    ``indices``: Local indices: "kinematic", "dynamic", "all", the name of an index, or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
     ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
@@ -445,7 +446,7 @@ def robot_comparison(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
     characteristic_length_m: float = 1.0,
@@ -472,7 +473,7 @@ def robot_comparison(
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
-    ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
+    ``indices``: Local indices: "kinematic", "dynamic", "all", the name of an index, or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
     ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
@@ -540,7 +541,8 @@ def base_placement(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document; None: robots are given.
-    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
+        given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
@@ -673,7 +675,8 @@ def two_arm_placement(
     come before those without, and of pairs that serve the same weight that is best which offers most of these poses.
     Targets, constraints, which either arm must satisfy, and environment stand in the world.
 
-    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
+        given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``constraints``: Which configurations of both arms are admitted, and which of a hand-over's they may be in together;
         None: all.
@@ -843,7 +846,7 @@ def parallel_workspace(
     orientations: EulerRanges | TiltRanges | Mapping[str, Any] | None = None,
     method: Literal["grid", "grid_by_subsystem", "exact", "solids"] = "grid_by_subsystem",
     voxel_size_m: float | None = None,
-    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = (),
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] | str = (),
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] | None = None,
     characteristic_length_m: float = 1.0,

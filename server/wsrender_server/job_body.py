@@ -353,6 +353,10 @@ def _tighten(part: dict[str, Any]) -> None:
                 choice |= {"uniqueItems": True} | LISTS[name]
                 if name == "indices":
                     choice["items"] = {"enum": _index_names()}
+        if name == "indices" and "anyOf" in schema:
+            groups = next(choice["enum"] for choice in schema["anyOf"] if "enum" in choice)
+            lists = [choice for choice in schema["anyOf"] if "items" in choice]
+            schema["anyOf"] = [{"type": "string", "enum": [*groups, *_index_names()]}, *lists]
 
 
 def _index_names() -> list[str]:

@@ -94,7 +94,7 @@ def nested(depth):
 CODE = {"convention": "wsrender_code", "precision": "float64"}
 METHODS = 'must be one of "grid", "random", "sobol", "boundary", "converge"'
 TASKS = 'must be "linear", "angular", "full" or a list of rows from x y z rx ry rz'
-GROUPS = 'must be "kinematic", "dynamic", "all" or a list of index names'
+GROUPS = 'must be "kinematic", "dynamic", "all", the name of an index, or a list of such names'
 
 MALFORMED = [
     # the document as a whole
@@ -160,7 +160,7 @@ MALFORMED = [
     (converged(step=0), "sampling.step", "must be at least 1, not 0"),
     (converged(index=""), "sampling.index", "must not be empty"),
     # indices and task
-    (job(indices="manipulability"), "indices", f'{GROUPS}, not "manipulability"'),
+    (job(indices=""), "indices", f'{GROUPS}, not ""'),
     (job(indices=[]), "indices", "must not be empty, not []"),
     (job(indices=[1]), "indices", f"{GROUPS}, not [1]"),
     (job(indices=None), "indices", f"{GROUPS}, not null"),
@@ -350,7 +350,7 @@ MALFORMED = [
     ({"analysis": "parallel_workspace"}, "mechanism", "is required"),
     (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", "master_4dof", not'),
     (legs(mechanism={"library": "six_pus", "link_m": -1}), "mechanism.link_m", "must be a number above 0"),
-    (legs(indices="manipulability"), "indices", f'{GROUPS}, not "manipulability"'),
+    (legs(indices=""), "indices", f'{GROUPS}, not ""'),
     (legs(indices=[1]), "indices", f"{GROUPS}, not [1]"),
     (legs(kind="reachable"), "kind", 'must be "constant_orientation", "orientation", "dexterous" or'),
     (legs(kind="dexterous"), "orientations", 'must be given with kind "dexterous"'),

@@ -243,7 +243,7 @@ import wsrender as ws
 arm = ws.load_robot("ur5e")
 ws.capability(arm, voxel_size_m=0.1, directions=50).document
 ws.analyze("ur5e", ws.Sobol(100), ["manipulability"], task=["x", "y"], progress=True, surfaces=["convex_hull"])
-ws.analyze(arm, None, "dynamic", constraints={"region": {"sphere": {"radius_m": 1}}}, index_options={"own": {"a": 1}})
+ws.analyze(arm, None, "isotropy", constraints={"region": {"sphere": {"radius_m": 1}}}, index_options={"own": {"a": 1}})
 ws.indices_at(arm, np.zeros((3, 6)), base="link1")
 ws.shared_workspace([arm, "ur5e", {"robot": "ur5e"}], [ws.Sobol(10), None, ws.Grid(3)], names=["a", "b", "c"])
 ws.collaborative_volume(arm, np.zeros((9, 3)), cells=(6, 6, 6))
@@ -253,7 +253,7 @@ ws.five_bar(ws.FiveBar.symmetric(6, 8, 5), points_m=[[5, 7]])
 ws.capability(arm, direction=50)
 ws.capability(arm, directions="many")
 ws.capability(arm, approach_axis="w")
-ws.analyze(arm, indices="kinematics")
+ws.analyze(arm, indices=6)
 ws.analyze(arm, sampling=1000)
 ws.indices_at(arm)
 """

@@ -49,9 +49,9 @@ def _task(value: Any) -> str | tuple[str, ...]:
 def _indices(value: Any) -> str | tuple[str, ...]:
     if isinstance(value, str) and value in INDEX_GROUPS:
         return value
-    names = () if isinstance(value, str) or value is None else distinct(sequence(value))
+    names = (value,) if isinstance(value, str) else () if value is None else distinct(sequence(value))
     if not names or not all(isinstance(name, str) and name for name in names):
-        raise ValueError(f"must be {quoted(INDEX_GROUPS)} or a list of index names")
+        raise ValueError(f"must be {quoted(INDEX_GROUPS)}, the name of an index, or a list of such names")
     return names
 
 
@@ -134,8 +134,9 @@ def _ordered(value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
 Task = Annotated[
     Literal["linear", "angular", "full"] | tuple[Literal["x", "y", "z", "rx", "ry", "rz"], ...], BeforeValidator(_task)
 ]
-Indices = Annotated[Literal["kinematic", "dynamic", "all"] | tuple[Name, ...], BeforeValidator(_indices)]
-IndicesOrNone = Annotated[Literal["kinematic", "dynamic", "all"] | tuple[Name, ...], BeforeValidator(_indices_or_none)]
+_Asked = Literal["kinematic", "dynamic", "all"] | tuple[Name, ...] | Name  # of a single name a list is made
+Indices = Annotated[_Asked, BeforeValidator(_indices)]
+IndicesOrNone = Annotated[_Asked, BeforeValidator(_indices_or_none)]
 _OptionValue = Annotated[bool | int | float | tuple[Number, ...], BeforeValidator(_option_value)]
 IndexOptions = Annotated[
     dict[Name, Annotated[dict[Name, _OptionValue], BeforeValidator(_options)]], BeforeValidator(_options)
@@ -170,7 +171,7 @@ class IndexChoices(Document):
     """Which local indices are evaluated, and how."""
 
     indices: Indices = "kinematic"
-    """Local indices: "kinematic", "dynamic", "all", or a list of names."""
+    """Local indices: "kinematic", "dynamic", "all", the name of an index, or a list of names."""
     index_options: IndexOptions = Field(default={})
     """Options of the indices that have any: {index: {option: value}}."""
     task: Task = "linear"

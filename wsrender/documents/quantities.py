@@ -129,17 +129,25 @@ def argument(field: str, convert: Callable[[Any], Any], value: Any) -> Any:
         raise InputError(field, f"{error}, not {value!r}") from None
 
 
-def rows_of(width: int) -> BeforeValidator:
-    """Rows of so many numbers; only the first wrong one is told, since there may be millions."""
+def rows_of(width: int, least: int = 0) -> BeforeValidator:
+    """Rows of so many numbers, or a single one as it is; only the first wrong one is told: there may be millions."""
 
     def rows(value: Any) -> tuple[tuple[float, ...], ...]:
-        found = number_rows(value)
+        found = number_rows(listed_rows(value))
         wrong = next((k for k, row in enumerate(found) if len(row) != width), None)
         if wrong is not None:
             raise ValueError(f"must hold rows of {width} numbers; row {wrong} has {len(found[wrong])}")
         return found
 
-    return BeforeValidator(rows)
+    single = tuple[tuple([Number] * width)]  # type: ignore[valid-type]
+    several = Annotated[tuple[single, ...], Field(min_length=least)] if least else tuple[single, ...]
+    return BeforeValidator(rows, json_schema_input_type=several | single)
+
+
+def listed_rows(value: Any) -> list[Any]:
+    """A list of rows: what is given, or a single row in a list. Raises ValueError for what is no list."""
+    listed = sequence(value)
+    return [listed] if listed and not hasattr(listed[0], "__len__") else listed
 
 
 def distinct(values: Iterable) -> tuple:

@@ -191,7 +191,7 @@ class ListedTargets(Targets):
     long_fields: ClassVar[tuple[str, ...]] = (*Targets.long_fields, "targets")
 
     points_m: Points | None = None  # type: ignore[assignment]
-    """Positions of the targets in the world frame, rows of x, y, z [m]; null: targets are given."""
+    """Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; null: targets are given."""
     targets: Annotated[ListOrTable | None, Field(exclude_if=is_none)] = None
     """Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own, one by
     one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step."""

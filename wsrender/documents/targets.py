@@ -11,8 +11,8 @@ from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, 
 
 SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
 
-Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), rows_of(3)]
-Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), rows_of(4)]
+Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), rows_of(3, least=1)]
+Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), rows_of(4, least=1)]
 
 
 class Targets(Document):
@@ -21,7 +21,7 @@ class Targets(Document):
     long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")
 
     points_m: Points
-    """Positions of the targets in the world frame, rows of x, y, z [m]."""
+    """Positions of the targets in the world frame, rows of x, y, z, or a single one [m]."""
     quats_wxyz: Quaternions | None = None
     """Orientations of the targets, a quaternion w, x, y, z for each point; null: any orientation will do."""
     position_tolerance_m: PositiveNumber = 1e-5

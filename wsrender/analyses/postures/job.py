@@ -1,8 +1,8 @@
 """The job ``postures``: all configurations of given poses."""
 
 import math
-from collections.abc import Callable, Iterator
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool
 
@@ -10,24 +10,9 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, IndicesOrNone, Precision
-from wsrender.documents.quantities import Number, Seed, integer, real, rows_of, sequence
+from wsrender.documents.quantities import Seed, integer, real
 from wsrender.documents.target_lists import UNIT, is_none
-
-
-def _one_or_rows(width: int) -> BeforeValidator:
-    """Rows of so many numbers, or a single one."""
-    rows: Callable[[Any], Any] = rows_of(width).func  # type: ignore[assignment]
-
-    def given(value: Any) -> Any:
-        listed = sequence(value)
-        return rows([listed] if listed and not hasattr(listed[0], "__len__") else listed)
-
-    single = tuple[tuple([Number] * width)]  # type: ignore[valid-type]
-    return BeforeValidator(given, json_schema_input_type=tuple[single, ...] | single)
-
-
-Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), _one_or_rows(3)]
-Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), _one_or_rows(4)]
+from wsrender.documents.targets import Points, Quaternions
 
 
 class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):

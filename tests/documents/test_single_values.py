@@ -1,0 +1,64 @@
+"""A single point, quaternion or name stands where a list of them does, and means the list of it."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from wsrender.analyses.jobs import parse_job
+
+POINT, QUATERNION = [0.2, 0.1, 0.15], [1, 0, 0, 0]
+FIELDS = {
+    "reachability": {"points_m": POINT, "quats_wxyz": QUATERNION},
+    "postures": {"position_m": POINT, "quat_wxyz": QUATERNION},
+    "planar_boundary": {"points_m": [0.2, 0.1]},
+    "workspace": {"indices": "manipulability"},
+}
+
+
+def parsed(analysis, **fields):
+    robot = {"dh": {"convention": "standard", "rows": [{"a": 0.3, "limits": [-1, 1]}, {"a": 0.2, "limits": [-1, 1]}]}}
+    return parse_job({"analysis": analysis, "robot": robot, **fields})
+
+
+@pytest.mark.parametrize("analysis", FIELDS)
+def test_one_means_a_list_of_one(analysis):
+    fields = FIELDS[analysis]
+    one, listed = parsed(analysis, **fields), parsed(analysis, **{name: [value] for name, value in fields.items()})
+    assert one == listed and one.model_dump_json() == listed.model_dump_json()
+    for name, value in fields.items():
+        assert getattr(one, name) == ((value,) if isinstance(value, str) else (tuple(value),))
+
+
+def test_arrays_too():
+    points = np.array(POINT)
+    assert parsed("reachability", points_m=points) == parsed("reachability", points_m=points[None])
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ([0.1, 0.2], "must hold rows of 3 numbers; row 0 has 2"),
+        ([0.1, [0.1, 0.2, 0.3]], "must be a number"),
+        ([[0.1, 0.2, 0.3], 0.1], "must be a list"),
+        (0.1, "must be a list"),
+        ([], "must have at least 1 items"),
+        (["0.1", "0.2", "0.3"], "must"),
+    ],
+)
+def test_what_is_neither_is_refused(value, message):
+    with pytest.raises(ws.DocumentError, match=f"points_m: {message}"):
+        parsed("reachability", points_m=value)
+
+
+def test_a_name_that_is_none():
+    with pytest.raises(ws.DocumentError, match='the name of an index, or a list of such names, not ""'):
+        parsed("workspace", indices="")
+    with pytest.raises(ws.InputError, match="manip"):
+        ws.analyze("scara", indices="manip", sampling=ws.Sobol(10))
+
+
+def test_python_takes_one_too():
+    found = ws.reachability("scara", POINT)
+    assert found.document == ws.reachability("scara", [POINT]).document | {
+        name: found.document[name] for name in ("timing_s", "provenance")
+    }
