@@ -15,7 +15,7 @@ from tests.collision.robots import drawn, random_text
 from wsrender.collision import certificates as certified
 from wsrender.collision import grids, levers, store
 from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
-from wsrender.collision.covers import LEVELS, cover, from_segment
+from wsrender.collision.covers import LEVELS, _segment_distances, cover, from_segment
 from wsrender.collision.distance import frames_of
 from wsrender.collision.solids import Solid
 from wsrender.collision.supports import EDGE, PAD, supports
@@ -283,3 +283,22 @@ def test_cells_of_directions_hold_the_farthest_points(stretched):
 def test_few_points_are_of_all_directions():
     points = np.random.default_rng(0).normal(size=(PAD, 3))
     assert all((each == np.arange(PAD)).all() for each in supports(points))
+
+
+def test_distances_of_many_segments_are_those_of_each():
+    random = np.random.default_rng(4)
+    a, b, points = random.normal(size=(20, 3)), random.normal(size=(20, 3)), random.normal(size=(50, 3))
+    b[0] = a[0]  # no length
+    points[0], points[1] = (a[1] + b[1]) / 2, b[2]
+    each = [from_segment(points, *ends) for ends in zip(a, b, strict=True)]
+    np.testing.assert_allclose(_segment_distances(points, a, b), each, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "scara", "so100"])
+def test_steps_of_joints_make_their_frames(name):
+    chain = ws.load_robot(name).chain
+    q = np.random.default_rng(5).uniform(-1, 1, (10, chain.n))
+    T = chain.T_world_base
+    for joint, expected in enumerate(np.moveaxis(chain.frames(q)[:, :-1], 1, 0)):
+        T = T @ chain.step(joint, q)
+        np.testing.assert_allclose(T, expected, rtol=0, atol=1e-14)
