@@ -1,0 +1,129 @@
+"""The site is built without a warning, and its pages are whole in a real Chromium."""
+
+import re
+from urllib.parse import unquote, urldefrag, urljoin
+
+import pytest
+
+from tests.docs.site import SCRIPTS, build, chosen, serving
+from tests.viewer.written import launch
+
+PATIENCE_MS = 60_000
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    pytest.importorskip("sphinx_gallery", reason="needs the extra docs")
+    return build(tmp_path_factory.mktemp("docs"))
+
+
+@pytest.fixture(scope="module")
+def browser():
+    api = pytest.importorskip("playwright.sync_api", reason="needs Playwright for Python and a Chromium")
+    with api.sync_playwright() as running:
+        browser = launch(running)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def address(folder):
+    with serving(folder) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def pages(folder):
+    """Addresses within the site; of the gallery those that were run, and its list."""
+    found = [path.relative_to(folder).as_posix() for path in sorted(folder.rglob("*.html"))]
+    kept = [name for name in found if not name.startswith(("_", "views/", "sg_execution_times"))]
+    run = set(chosen())
+    return [name for name in kept if "/plot_" not in name or name.rpartition("/")[2].removesuffix(".html") in run]
+
+
+def test_every_script_has_its_page(folder, pages):
+    assert len(SCRIPTS) >= 30
+    for path in SCRIPTS:
+        assert (folder / f"generated/gallery/{path.parent.name}/{path.stem}.html").is_file()
+    assert sum("/plot_" in name for name in pages) == len(chosen())
+
+
+def test_every_picture_is_described(folder, pages):
+    for name in pages:
+        for tag in re.findall(r"<img[^>]*>", (folder / name).read_text(encoding="utf-8")):
+            stands_by_its_title = "_thumb." in tag  # in a list of the gallery, within the link that the title names
+            assert stands_by_its_title or re.search(r'alt="[^"]+"', tag), (name, tag)
+        for tag in re.findall(r"<iframe[^>]*>", (folder / name).read_text(encoding="utf-8")):
+            assert re.search(r'title="[^"]+"', tag), (name, tag)
+
+
+def test_no_link_within_the_site_is_broken(folder, pages):
+    for name in pages:
+        text = (folder / name).read_text(encoding="utf-8")
+        for link in re.findall(r'<a [^>]*?href="([^"]+)"', text):
+            if re.match(r"[a-z]+:", link):
+                continue
+            place, part = urldefrag(urljoin(f"/{name}", link))
+            target = folder / unquote(place).lstrip("/")
+            assert target.is_file(), (name, link)
+            if part and target.suffix == ".html":
+                assert f'id="{unquote(part)}"' in target.read_text(encoding="utf-8"), (name, link)
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_pages_are_whole(browser, address, pages, width):
+    """Nothing is reported, missing or asked of another host, and no page is wider than the screen."""
+    context = browser.new_context(viewport={"width": width, "height": 800})
+    context.set_default_timeout(PATIENCE_MS)
+    for name in pages:
+        page, faults = context.new_page(), []
+        page.on("console", lambda said, to=faults: to.append(said.text) if said.type == "error" else None)
+        page.on("pageerror", lambda error, to=faults: to.append(str(error)))
+        page.on("response", lambda answer, to=faults: to.append(answer.url) if answer.status >= 400 else None)
+        page.on("request", lambda asked, to=faults: to.append(asked.url) if _is_foreign(asked.url, address) else None)
+        page.goto(address + name)
+        missing = page.evaluate("""async () => {
+          const all = [...document.images];
+          all.forEach(each => each.loading = "eager");
+          const found = await Promise.all(all.map(each => each.decode().then(() => null, () => each.src)));
+          return found.filter(each => each);
+        }""")
+        for frame in page.locator("iframe.viewer").all():
+            frame.scroll_into_view_if_needed()
+            frame.content_frame.locator("canvas").first.wait_for()
+        wider = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        assert (faults, missing, max(wider, 0)) == ([], [], 0), name
+        page.close()
+    context.close()
+
+
+def _is_foreign(url: str, address: str) -> bool:
+    return not url.startswith((address, "data:", "blob:"))
+
+
+# Questions, and the page that answers each.
+ANSWERS = {
+    "How accurate is this volume?": "plot_how_accurate_is_the_volume",
+    "How do I set the tool (TCP)?": "plot_tool",
+    "Which of these robots does my task?": "plot_which_robot_does_my_task",
+    "Can the arm carry 3 kg everywhere?": "plot_can_it_carry_3_kg_everywhere",
+    "How do I compare two designs?": "plot_compare_two_designs",
+    "Where do I put the base so that all my targets are reached?": "plot_base_for_my_targets",
+    "How do I cite it?": "plot_citing",
+    "How long will this job take and how much memory?": "plot_estimate_the_cost",
+    "How do I make the figure for my paper?": "plot_figure_for_a_paper",
+}
+
+
+def test_the_search_finds_what_answers_a_question(browser, address):
+    page = browser.new_page()
+    lost = {}
+    for question, answer in ANSWERS.items():
+        page.goto(f"{address}search.html?q={question.replace('?', '%3F').replace(' ', '+')}")
+        page.locator("#search-results .search-summary, #search-results p").first.wait_for()
+        page.wait_for_timeout(1500)
+        links = page.locator("#search-results ul.search li > a").evaluate_all("all => all.map(each => each.href)")
+        if not any(f"/{answer}.html" in link for link in links[:3]):
+            lost[question] = [link.rpartition("/")[2] for link in links[:3]]
+    page.close()
+    assert lost == {}
