@@ -130,13 +130,12 @@ def _jobs() -> Iterator[str]:
 
 
 def _fields(schema: Mapping[str, Any]) -> Iterator[str]:
-    yield "| field | type | default | what |\n|---|---|---|---|"
+    yield "| field | what |\n|---|---|"
     needed = schema.get("required", ())
     for name, field in schema.get("properties", {}).items():
-        default = "needed" if name in needed else f"`{_json(field['default'])}`" if "default" in field else ""
-        if name in needed and "const" in field:
-            default = f"`{_json(field['const'])}`"
-        yield f"| `{name}` | {_kind(field)} | {default} | {_cell(field.get('description', ''))} |"
+        default = f", by default `{_json(field['default'])}`" if "default" in field else ""
+        taken = f"*{_kind(field)}*{', needed' if name in needed else default}"
+        yield f"| `{name}` | {taken}<br>{_cell(field.get('description', ''))} |"
     yield ""
 
 
