@@ -27,7 +27,15 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
 ]
-exclude_patterns = ["_extensions", "examples", "gallery", "generated/**/*.ipynb", "generated/extra"]
+exclude_patterns = [
+    "_extensions",
+    "examples",
+    "gallery",
+    "generated/**/*.ipynb",
+    "generated/extra",
+    "**sg_execution_times.rst",
+    "sg_execution_times.rst",
+]
 suppress_warnings = ["config.cache"]  # the gallery's scraper is an object
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types of other packages: their sites are not asked
