@@ -45,6 +45,7 @@ def test_python(server, tmp_path):
     for program in ("openapi-python-client", "pyright"):
         if shutil.which(program) is None:
             pytest.skip(f"{program} is not installed: pip install wsrender[test-clients]")
+    pytest.importorskip("httpx", reason="what is generated needs it: pip install wsrender[test-clients]")
     check(walked("Python", server.url, tmp_path))
     (tmp_path / "pyrightconfig.json").write_text('{"include": ["walk.py"], "typeCheckingMode": "strict"}')
     python = shutil.which("python")

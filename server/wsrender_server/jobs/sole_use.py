@@ -62,7 +62,9 @@ class SoleUse:
         """Let others have the lock."""
         held, self._held = self._held, None
         if isinstance(held, Connection) and not held.closed:
-            held.invalidate()  # ends the session, and its lock with it
+            with contextlib.suppress(DBAPIError):
+                held.execute(text(f"SELECT pg_advisory_unlock({LOCK})"))  # at once: a session ends when it gets to it
+            held.invalidate()
         if held is not None:
             held.close()
 

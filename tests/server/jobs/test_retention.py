@@ -233,7 +233,8 @@ def test_models_are_listed_and_deleted(store):
         store.delete_model("ann", first)
     store.cancel("ann", job)
     assert store.delete_model("ann", first) and not store.delete_model("ann", first)
-    assert store.get_model("ann", first) is None and store.get_model("bob", first) == b"<mujoco/>"
+    assert store.model_path("ann", first) is None
+    assert store.model_path("bob", first).read_bytes() == b"<mujoco/>"
     assert store.delete_model("bob", first) and not store.files.model(first).exists()
     assert [each.sha256 for each in store.list_models("ann")] == [second] and store.list_models("bob") == []
 
@@ -250,7 +251,7 @@ def test_a_model_whose_deletion_the_database_did_not_take_keeps_its_file(store):
             store.delete_model("ann", sha256)
     finally:
         event.remove(store.transactions.engine, "commit", full)
-    assert store.get_model("ann", sha256) == b"<mujoco/>"
+    assert store.model_path("ann", sha256).read_bytes() == b"<mujoco/>"
     assert store.delete_model("ann", sha256) and not store.files.model(sha256).exists()
 
 

@@ -99,7 +99,9 @@ def test_a_lost_connection_takes_the_lock_again_or_says_who_has_it(store, second
     if store.transactions.engine.dialect.name != "postgresql":
         pytest.skip("a file's lock goes with its process")
     monkeypatch.setattr("wsrender_server.jobs.sole_use.LOOK_S", 0.0)
-    lost = text("SELECT pg_terminate_backend(pid) FROM pg_locks WHERE locktype = 'advisory'")
+    lost = text(
+        "SELECT pg_terminate_backend(pid, 30000) FROM pg_locks WHERE locktype = 'advisory'"
+    )  # and waits for its end
     with store.claimed():
         for other_is_there in (False, True):
             with store.transactions.read() as session:
