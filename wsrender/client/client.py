@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 import httpx2
 
+from wsrender.client.batch import Batch
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
@@ -112,6 +113,14 @@ class Client:
             body["timeout_s"] = timeout_s
         headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
         return Job(self._connection, self._connection.request("POST", "/v1/jobs", json=body, headers=headers).json())
+
+    def batch(self, *, at_once: int = 8, cancel: bool = False) -> Batch:
+        """Many jobs, submitted and waited for ``at_once`` (1 to 64) at a time.
+
+        A context manager, whose ``submit`` gives the future of a result. Left by an exception, such as Ctrl-C, it lets
+        its jobs go on at the server; with ``cancel`` it stops them. Raises InputError.
+        """
+        return Batch(self.submit, at_once, cancel)
 
     def estimate(self, job: Any) -> dict[str, Any]:
         """Check a job without running it: samples, bytes and seconds that it would take."""
