@@ -34,7 +34,6 @@ exclude_patterns = [
     "generated/**/*.ipynb",
     "generated/extra",
     "**sg_execution_times.rst",
-    "sg_execution_times.rst",
 ]
 suppress_warnings = ["config.cache"]  # the gallery's scraper is an object
 nitpicky = True

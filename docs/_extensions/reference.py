@@ -27,15 +27,8 @@ def write(app: Sphinx) -> None:
     """Write all pages into ``generated/reference``."""
     folder = Path(app.srcdir) / "generated" / "reference"
     folder.mkdir(parents=True, exist_ok=True)
-    pages = {
-        "python": _python(),
-        "jobs": _jobs(),
-        "results": _results(),
-        "command_line": _command_line(),
-        "http": _http(),
-    }
-    for name, lines in pages.items():
-        text = "\n".join(lines) + "\n"
+    for name, lines in PAGES.items():
+        text = "\n".join(lines()) + "\n"
         path = folder / f"{name}.md"
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
@@ -98,8 +91,8 @@ def _safe(text: str) -> str:
 
 def _members(value: type) -> Iterator[str]:
     """Public methods and properties with their docstrings."""
-    shown = [name for name in vars(value) if not name.startswith("_")]
-    for name in shown:
+    own = [each for each in value.__mro__ if each.__module__.startswith("wsrender")]
+    for name in dict.fromkeys(name for each in own for name in vars(each) if not name.startswith("_")):
         member = inspect.getattr_static(value, name)
         function = getattr(member, "fget", None) or getattr(member, "func", None) or getattr(member, "__func__", member)
         if not inspect.isfunction(function) or not function.__doc__:

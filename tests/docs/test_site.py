@@ -1,12 +1,15 @@
 """The site is built without a warning, and its pages are whole in a real Chromium."""
 
 import re
+from types import ModuleType
 from urllib.parse import quote_plus, unquote, urldefrag, urljoin
 
 import pytest
 
+import wsrender as ws
 from tests.docs.site import SCRIPTS, build, chosen, serving
 from tests.viewer.written import launch
+from wsrender.analyses.registry import job_classes
 
 PATIENCE_MS = 60_000
 
@@ -46,6 +49,28 @@ def test_every_script_has_its_page(folder, pages):
     for path in SCRIPTS:
         assert (folder / f"generated/gallery/{path.parent.name}/{path.stem}.html").is_file()
     assert sum("/plot_" in name for name in pages) == len(chosen())
+
+
+def test_the_reference_has_all_that_there_is(folder):
+    shown = {path.stem: path.read_text(encoding="utf-8") for path in folder.glob("generated/reference/*.html")}
+    anchors = {name: set(re.findall(r'<section id="([^"]+)"', text)) for name, text in shown.items()}
+    for name in job_classes():
+        assert {name, name.replace("_", "-")} & anchors["jobs"] and {name, name.replace("_", "-")} & anchors["results"]
+    for name in ws.__all__:
+        if isinstance(getattr(ws, name), str | ModuleType):
+            continue
+        assert f"<h3>{name}<" in shown["python"], name
+    assert "skeleton(q" in shown["python"]
+    for path in ("/v1/jobs", "/v1/jobs/{job_id}/volume/slice", "/v1/models/{sha256}"):
+        assert path in shown["http"]
+    for command in (
+        "wsrender run",
+        "wsrender submit",
+        "wsrender serve",
+        "wsrender database backup",
+        "wsrender jobs list",
+    ):
+        assert f"{command}<" in shown["command_line"], command
 
 
 def test_every_picture_is_described(folder, pages):

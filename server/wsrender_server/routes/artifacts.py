@@ -222,15 +222,16 @@ async def drawn(
     format: formats.Format,
     options: dict[str, Any],
     instead: Mapping[str, str] = MappingProxyType({}),
+    headers: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
-    """A picture of the result's files, or of those ``instead`` of them."""
+    """A picture of the result's files, or of those ``instead`` of them, with more ``headers``."""
     records, result = await run_in_threadpool(_listed, server, job)
     with not_found_if_gone(RESULT, Path(result)):
         wanted = await readable(server.side_process.run(files_for_plot, result, plot, records))
     files = {**await run_in_threadpool(files_of, server, job, wanted), **instead}
     with not_found_if_gone(", ".join(files), *map(Path, (result, *files.values()))):
         content = await or_404(server.side_process.run(draw, result, files, plot, format, options))
-    return content_response(request, content, format.media_type, {"Vary": "Accept"})
+    return content_response(request, content, format.media_type, headers)
 
 
 def _listed(server: Parts, job: JobRecord) -> tuple[list[str], str]:

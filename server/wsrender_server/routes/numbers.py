@@ -44,6 +44,7 @@ SLICES = {
     "csv": "text/csv",
 }
 TEXTS: dict[TextFormat, str] = {"json": "application/json", "csv": "text/csv"}
+BY_ACCEPT = {"Vary": "Accept"}  # for caches on the way
 LARGEST_PLACE = 2**53  # of a row: what JSON's readers count to
 _FORMAT = Query(description="JSON, or CSV with a line of names first.")
 _VOLUME = Query(max_length=256, description="Which volume, where the result has several: name of its file.")
@@ -192,11 +193,11 @@ async def get_slice(
     record, path = await run_in_threadpool(data_of, server, job, "volume", volume)
     if kind == PICTURE.suffix:
         options = {"axis": axis, axis: at, "index": index, "statistic": statistic}
-        return await drawn(request, server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)})
+        return await drawn(request, server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)}, BY_ACCEPT)
     with not_found_if_gone(record.name, path):
         making = server.side_process.run(slice_content, str(path), axis, at, index, statistic, kind)
         content, headers = await or_404(making)
-    return content_response(request, content, SLICES[kind], {**headers, "Vary": "Accept"})
+    return content_response(request, content, SLICES[kind], {**headers, **BY_ACCEPT})
 
 
 @router.get(

@@ -246,6 +246,7 @@ def test_pictures(client, finished):
     png = b"\x89PNG\r\n"
     picture = client.get(f"{finished}/volume/slice", headers={"Accept": "text/html;q=0.5, image/png"})
     assert picture.headers["content-type"] == "image/png" and picture.content.startswith(png)
+    assert picture.headers["vary"] == client.get(f"{finished}/volume/slice").headers["vary"] == "Accept"
     for plot in ("robot", "slices", "slice"):
         assert client.get(f"{finished}/plots/{plot}").content.startswith(png)
     svg = client.get(f"{finished}/plots/histogram", params={"format": "svg"})

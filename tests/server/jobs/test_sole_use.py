@@ -117,6 +117,17 @@ def test_a_lost_connection_takes_the_lock_again_or_says_who_has_it(store, second
                 second("data").sole_use.take()
 
 
+def test_a_lock_is_let_go_before_its_session_ends(store, second, monkeypatch):
+    if store.transactions.engine.dialect.name != "postgresql":
+        pytest.skip("a file's lock goes with its process")
+    store.sole_use.take()
+    monkeypatch.setattr(Connection, "invalidate", lambda self, exception=None: None)  # the session lasts
+    store.sole_use.release()
+    rival = second("data").sole_use
+    rival.take()
+    rival.release()
+
+
 def test_a_copy_of_both_is_a_pair_as_well(database, store, second, tmp_path):
     with store.claimed():
         store.put_model("ann", b"<mujoco/>")
