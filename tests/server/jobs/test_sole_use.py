@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from sqlalchemy import delete, text
+from sqlalchemy import Connection, delete, text
 from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.faults import StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
@@ -121,8 +121,9 @@ def test_a_lock_is_let_go_before_its_session_ends(store, second, monkeypatch):
     if store.transactions.engine.dialect.name != "postgresql":
         pytest.skip("a file's lock goes with its process")
     store.sole_use.take()
-    monkeypatch.setattr(Connection, "invalidate", lambda self, exception=None: None)  # the session lasts
-    store.sole_use.release()
+    with monkeypatch.context() as patched:
+        patched.setattr(Connection, "invalidate", lambda self, exception=None: None)  # the session lasts
+        store.sole_use.release()
     rival = second("data").sole_use
     rival.take()
     rival.release()
