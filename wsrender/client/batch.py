@@ -45,6 +45,10 @@ class Batch:
         self._futures.append(future)
         return future
 
+    def __repr__(self) -> str:
+        ended = sum(each.done() for each in self._futures)
+        return f"<Batch: {ended} of {len(self._futures)} jobs have ended>"
+
     @property
     def errors(self) -> dict[int, BaseException]:
         """What went wrong with jobs that have ended, by their place in the batch, from 0."""

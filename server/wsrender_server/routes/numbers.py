@@ -63,7 +63,7 @@ class SliceView(View):
     """Normal of the plane."""
     at_m: float
     """Where its voxels' centres are along that axis [m]."""
-    axes: tuple[Literal["x", "y"], Literal["y", "z"]]
+    axes: tuple[Literal["x", "y", "z"], Literal["x", "y", "z"]]
     """The axes that the values run over."""
     origin_m: tuple[float, float]
     """Lower corner of the first voxel along these axes [m]."""
