@@ -1,10 +1,11 @@
 """Numbers of results as text and for other programs: planes of voxels, volumes, tables, histograms."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi import Path as PathParameter
+from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from wsrender.results.export import formats
@@ -52,6 +53,11 @@ _VOLUME_FORMAT = OneOf(lambda: formats.suffixes(formats.rows("volume")))
 _KEPT = formats.kept("volume").suffix
 
 
+T = TypeVar("T")
+# Of a plane; the schema of a tuple (prefixItems) is misread by schemathesis 4.32 in answers of many types.
+Pair = Annotated[list[T], Field(min_length=2, max_length=2)]
+
+
 class SliceView(View):
     """A plane of voxels."""
 
@@ -63,13 +69,13 @@ class SliceView(View):
     """Normal of the plane."""
     at_m: float
     """Where its voxels' centres are along that axis [m]."""
-    axes: tuple[Literal["x", "y", "z"], Literal["x", "y", "z"]]
+    axes: Pair[Literal["x", "y", "z"]]
     """The axes that the values run over."""
-    origin_m: tuple[float, float]
+    origin_m: Pair[float]
     """Lower corner of the first voxel along these axes [m]."""
     voxel_size_m: float
     """Edge of a voxel [m]."""
-    shape: tuple[int, int]
+    shape: Pair[int]
     """Voxels along each of these axes."""
     values: list[list[float | None]]
     """`values[i][j]`: what the voxel i along the first axis, j along the second holds; null where it is empty."""
