@@ -18,7 +18,7 @@ from tests.collision import many_labels
 from tests.engine import closed_form_poses, free_joint_sweeps, open_wrist_poses
 from tests.reach import near_limits, posture_peers, refutations, self_motion_sweeps
 from tests.robots import model_packages
-from tests.server import soak
+from tests.server import soak, webhook_deliveries
 from tests.server.hostile import collection
 from tests.viewer import largest_picture
 
@@ -35,6 +35,7 @@ PIECES = {
     "refutations": refutations,
     "hostile": collection,
     "soak": soak,
+    "webhooks": webhook_deliveries,
     "largest_picture": largest_picture,
 }
 

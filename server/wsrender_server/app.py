@@ -83,6 +83,7 @@ from wsrender_server.routes import (  # noqa: E402
     operation,
     view,
     view_session,
+    webhooks,
 )
 from wsrender_server.routes import jobs as job_routes  # noqa: E402
 
@@ -90,7 +91,7 @@ ROUTERS = [
     module.router
     for module in (
         *(job_routes, events, artifacts, numbers, view, view_session),
-        *(catalogue, keys, kinetostatic_stream, operation),
+        *(catalogue, keys, webhooks, kinetostatic_stream, operation),
     )
 ]
 

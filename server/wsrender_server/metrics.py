@@ -38,6 +38,16 @@ class Metrics:
         )
         self.freed = Counter("wsrender_retention_freed_bytes", "Bytes that it has freed.", registry=self.registry)
         self._told = dict.fromkeys(("job", "result", "model", "files", "bytes"), 0)  # of what retention has removed
+        self.webhooks = Counter(
+            "wsrender_webhook_deliveries",
+            "Attempts that delivered or failed, and messages that were given up.",
+            ("outcome",),
+            registry=self.registry,
+        )
+        self._delivered = dict.fromkeys(("delivered", "failed", "given_up"), 0)
+        self.webhooks_waiting = Gauge(
+            "wsrender_webhook_deliveries_waiting", "Messages that webhooks have not got yet.", registry=self.registry
+        )
         self.free_disk = Gauge("wsrender_free_disk_bytes", "Free disk of the data folder.", registry=self.registry)
 
     def answered(self, method: str, route: str, status: int, seconds: float) -> None:
@@ -53,8 +63,14 @@ class Metrics:
         free_bytes: int,
         kept: Mapping[str, int],
         removed: Mapping[str, int],
+        deliveries: Mapping[str, int],
+        waiting_deliveries: int,
     ) -> bytes:
         """All metrics in Prometheus' text format; ``removed`` counts things by kind, and ``bytes``."""
+        for outcome, told in self._delivered.items():
+            self._delivered[outcome] = deliveries.get(outcome, 0)
+            self.webhooks.labels(outcome).inc(self._delivered[outcome] - told)
+        self.webhooks_waiting.set(waiting_deliveries)
         for what, size in kept.items():
             self.kept.labels(what).set(size)
         for what, told in self._told.items():

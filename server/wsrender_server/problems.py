@@ -36,6 +36,7 @@ from wsrender_server.jobs.faults import (
     QuotaExceeded,
     ResultExpired,
     StoreUnavailable,
+    TargetNotAllowed,
 )
 from wsrender_server.jobs.files import is_full
 
@@ -108,6 +109,7 @@ ANSWERS: dict[type[BaseException], Answer] = {
     IdempotencyConflict: Answer(422, "The idempotency key was used with another body"),
     InvalidTransition: Answer(409, "The job's state does not allow that"),
     QueueFull: Answer(429, "Too many unfinished jobs", retryable=True),
+    TargetNotAllowed: Answer(409, "No webhook is sent there"),
     QuotaExceeded: Answer(409, "The quota is used up"),
     ResultExpired: Answer(409, "The result is no longer kept"),
     StoreUnavailable: Answer(503, "The database does not answer", retryable=True),

@@ -15,6 +15,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 OLD_FOLDER = Path("wsrender-data")  # in the working directory: the default of 0.1
 GIB = 2**30
 _ORIGIN = re.compile(r"https?://(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:[0-9]{1,5})?")
+_TARGET = re.compile(r"https?://(\[[0-9a-f:.]+\]|\*|(\*\.)?[a-z0-9_-][a-z0-9._-]*)(:[0-9]{1,5})?")
 PREFIX = "WSRENDER_"
 # Variables that are not the server's: of kernels, of collision tables and uploaded models, of the client, of results.
 OTHERS = ("THREADS", "CACHE_DIR", "MODELS", "SERVER", "TOKEN", "SAY_HOST")
@@ -45,8 +46,16 @@ def _origin(value: str) -> str:
     return value
 
 
+def _target(value: str) -> str:
+    if not _TARGET.fullmatch(value):
+        such = "https://hooks.example.org, https://*.example.org, https://* or http://receiver:9000"
+        raise ValueError(f"must be origins, such as {such}, not {value!r}")
+    return value
+
+
 Names = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_listed)]
 Origins = Annotated[tuple[Annotated[str, AfterValidator(_origin)], ...], NoDecode, BeforeValidator(_listed)]
+TargetOrigins = Annotated[tuple[Annotated[str, AfterValidator(_target)], ...], NoDecode, BeforeValidator(_listed)]
 Networks = Annotated[tuple[IPv4Network | IPv6Network, ...], NoDecode, BeforeValidator(_listed)]
 
 
@@ -96,6 +105,15 @@ class Settings(BaseSettings):
     trusted_proxies: Networks = ()
     """Addresses or networks of proxies, separated by commas: their X-Forwarded-Prefix counts, and their connections are
     not limited."""
+    webhook_targets: TargetOrigins = ()
+    """Origins, separated by commas, that webhooks may be sent to: https://hooks.example.org, https://*.example.org for
+    every name below it, https://* for all, http://… where it need not be encrypted. Empty: none is sent."""
+    webhook_networks: Networks = ()
+    """Addresses or networks, separated by commas, that webhooks may reach beside public ones: 10.0.0.0/8."""
+    webhook_retry_s: float = Field(default=5.0, gt=0, le=3600)
+    """Longest wait after the first failure of a delivery [s]; it doubles with each, up to an hour."""
+    webhook_give_up_s: float = Field(default=3 * 86_400.0, ge=0)
+    """Age of a delivery after which a failure is its last [s]."""
 
     read_timeout_s: float = Field(default=20.0, gt=0)
     """Time for the head of a request, and for its body beside its length at 16 KiB/s [s]."""

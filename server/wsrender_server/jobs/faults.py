@@ -7,16 +7,17 @@
         ├── IdempotencyConflict     the idempotency key was used with another body
         ├── InvalidTransition       the job's state does not allow what was asked
         ├── QueueFull               the owner has as many unfinished jobs as allowed
-        ├── QuotaExceeded           the owner's models take as many bytes as allowed
+        ├── QuotaExceeded           the owner's models take as many bytes as allowed, or webhooks are as many
         ├── ResultExpired           the job has succeeded, and its result is no longer kept
         ├── StoreUnavailable        the database is locked, gone or on a full disk; try again
         │   └── CommitUnknown       it was gone before it said whether it took the change
         ├── DiskFull                less disk is free than the server keeps in reserve; try again
-        └── EngineUnavailable       no scheduler or worker answers; try again
-            └── EngineSlow          the scheduler is there, and takes its time
+        ├── EngineUnavailable       no scheduler or worker answers; try again
+        │   └── EngineSlow          the scheduler is there, and takes its time
+        └── TargetNotAllowed        this server sends no webhooks there
 """
 
-from wsrender.errors import WsrenderError
+from wsrender.errors import InputError, WsrenderError
 
 
 class JobFault(WsrenderError):  # noqa: N818
@@ -54,7 +55,7 @@ class QueueFull(JobFault):
 
 
 class QuotaExceeded(JobFault):
-    """The owner's models take as many bytes as allowed."""
+    """The owner's models take as many bytes, or their webhooks are as many, as allowed."""
 
     code = "quota_exceeded"
 
@@ -92,3 +93,12 @@ class EngineUnavailable(JobFault):
 
 class EngineSlow(EngineUnavailable):
     """The scheduler is connected, and has not answered in time: nothing is lost."""
+
+
+class TargetNotAllowed(JobFault, InputError):  # noqa: N818
+    """The server sends no webhooks to such a ``url``."""
+
+    code = "target_not_allowed"
+
+    def __init__(self, message: str):
+        InputError.__init__(self, "url", message)

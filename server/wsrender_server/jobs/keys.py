@@ -6,12 +6,12 @@ import secrets
 from collections.abc import Iterable
 from datetime import UTC, datetime
 
-from sqlalchemy import select
+from sqlalchemy import delete, select
 
 from wsrender.errors import InputError
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.records import KeyRecord
-from wsrender_server.jobs.tables import Key
+from wsrender_server.jobs.tables import Key, Webhook
 
 SCOPES = ("read", "submit", "priority", "admin")
 PREFIX = "wsr"
@@ -61,12 +61,13 @@ class KeyStore:
             return row is not None and row.revoked_at is None
 
     def revoke_key(self, key_id: str) -> KeyRecord | None:
-        """Revoke a key; None for an unknown one."""
+        """Revoke a key, and forget its webhooks; None for an unknown one."""
         with self.transactions.write() as session:
             row = session.get(Key, key_id)
             if row is None:
                 return None
             row.revoked_at = row.revoked_at or datetime.now(UTC)
+            session.execute(delete(Webhook).where(Webhook.owner == key_id))
             return _record(row)
 
     def find_key(self, secret: str) -> KeyRecord | None:

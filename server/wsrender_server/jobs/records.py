@@ -152,6 +152,48 @@ class KeyRecord:
 
 
 @dataclass(frozen=True)
+class WebhookRecord:
+    """Where an owner is told of the states of their jobs, without its secret.
+
+    ``waiting``, ``delivered`` and ``given_up`` count messages; ``disabled_at`` is when its receiver wanted no more.
+    """
+
+    id: str
+    url: str
+    states: tuple[JobState, ...]
+    created_at: datetime
+    disabled_at: datetime | None
+    waiting: int
+    delivered: int
+    given_up: int
+    last_delivered_at: datetime | None
+    last_error_at: datetime | None
+    last_error: str | None
+
+
+@dataclass(frozen=True)
+class DeliveryRecord:
+    """A message to a webhook, as it is sent, again and again if need be."""
+
+    id: str
+    webhook: str
+    url: str
+    secret: str
+    body: str
+    attempts: int = 0
+    """How often it has failed."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of an attempt to deliver a message. ``gone``: the receiver wants no more of anything."""
+
+    delivered: bool
+    said: str
+    gone: bool = False
+
+
+@dataclass(frozen=True)
 class ComputationRecord:
     """What the dispatcher needs of a computation; ``resolved`` is what its plan settled once and for all."""
 

@@ -6,6 +6,7 @@ from wsrender_server.jobs.dispatcher import Dispatcher
 from wsrender_server.jobs.records import WorkerRecord
 from wsrender_server.jobs.retention import Retention
 from wsrender_server.jobs.store import JobStore, open_store
+from wsrender_server.jobs.webhooks.deliveries import Deliveries
 from wsrender_server.settings import Settings
 
 
@@ -17,6 +18,7 @@ class JobService:
         self.store = store or open_store(settings)
         self.dispatcher = Dispatcher(self.store, settings)
         self.retention = Retention(self.store, settings)
+        self.deliveries = Deliveries(self.store, settings)
         self._guard = contextlib.ExitStack()
 
     def start(self) -> None:
@@ -26,6 +28,7 @@ class JobService:
         """
         self._guard.enter_context(self.store.claimed())
         self._guard.enter_context(self.retention.running())
+        self._guard.enter_context(self.deliveries.running())
         self.dispatcher.start()
 
     def stop(self) -> None:

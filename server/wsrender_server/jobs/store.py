@@ -60,6 +60,7 @@ from wsrender_server.jobs.tables import (
     subscribe,
 )
 from wsrender_server.jobs.together import Together
+from wsrender_server.jobs.webhooks.store import WebhookStore
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -107,7 +108,7 @@ class _Known:
         """Unfinished jobs by owner, of those who were looked at."""
 
 
-class JobStore(ComputationStore, ResultStore, KeyStore):
+class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
     """The only place with SQL. Methods block for milliseconds and may be called from any thread.
 
     Every method raises StoreUnavailable, and changes nothing, where the database is locked, gone or full.
@@ -134,6 +135,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         self._submissions = Together(self._submit_all)
         self.running_since = {}
         self.removed = Counter[str]()  # by retention in this process: things by kind, and bytes
+        self.deliveries = Counter[str]()
         self.times_kept = 0.0
 
     @contextmanager

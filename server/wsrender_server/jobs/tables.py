@@ -4,6 +4,9 @@ A job subscribes to a computation; events, labels and artifacts belong to one of
 lock of the job's computation.
 """
 
+import json
+import uuid
+from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
@@ -22,11 +25,14 @@ from sqlalchemy import (
     UniqueConstraint,
     delete,
     func,
+    select,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship
 from sqlalchemy.types import TypeDecorator
 
 from wsrender_server.jobs.records import ENDED, NEXT, ComputationState, JobRecord, JobState, Progress
+
+LONGEST_DETAIL = 1000  # characters of an error that a webhook is told
 
 log = structlog.get_logger("wsrender.jobs")
 
@@ -163,6 +169,41 @@ class Key(Table):
     revoked_at: Mapped[datetime | None]
 
 
+class Webhook(Table):
+    """Where an owner is told of the states of their jobs. Its secret signs what is sent, and so is kept as it is."""
+
+    __tablename__ = "webhooks"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    owner: Mapped[str] = mapped_column(String(64), index=True)
+    url: Mapped[str] = mapped_column(Text)
+    states: Mapped[str] = mapped_column(String(255))  # separated by spaces
+    secret: Mapped[str] = mapped_column(String(64))
+    created_at: Mapped[datetime]
+    disabled_at: Mapped[datetime | None]
+    delivered: Mapped[int] = mapped_column(Integer, default=0)
+    given_up: Mapped[int] = mapped_column(Integer, default=0)
+    last_delivered_at: Mapped[datetime | None]
+    last_error_at: Mapped[datetime | None]
+    last_error: Mapped[str | None] = mapped_column(Text)
+
+
+class Delivery(Table):
+    """A message that a webhook is to get; gone once it has it, or was given up.
+
+    No foreign key: a job changes its state whether or not a webhook is deleted at that moment.
+    """
+
+    __tablename__ = "deliveries"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    webhook_id: Mapped[str] = mapped_column(String(32), index=True)
+    created_at: Mapped[datetime]
+    body: Mapped[str] = mapped_column(Text)
+    attempts: Mapped[int] = mapped_column(Integer, default=0)
+    next_at: Mapped[datetime] = mapped_column(index=True)
+
+
 class StoreId(Table):
     """One row: the identity that this database shares with its data folder."""
 
@@ -230,6 +271,42 @@ def enter(session: Session, job: Job, state: JobState, error: dict[str, Any] | N
     if state in ENDED and state != JobState.EXPIRED:  # which had finished before
         job.finished_at = now
     add_event(session, job, "state", {"state": state, "attempt": job.attempt, "error": error})
+    _announce(session, job, now)
+
+
+def _announce(session: Session, job: Job, now: datetime) -> None:
+    """Let the webhooks that ask for it be told, by the same transaction, of the state that a job is in now."""
+    webhooks = session.info.setdefault("webhooks", {})  # by owner: a session is one transaction
+    if job.owner not in webhooks:
+        with session.no_autoflush:
+            query = select(Webhook.id, Webhook.states).where(Webhook.owner == job.owner, Webhook.disabled_at.is_(None))
+            webhooks[job.owner] = session.execute(query).all()
+    told = [row.id for row in webhooks[job.owner] if job.state in row.states.split()]
+    if not told:
+        return
+    error = job.error and {
+        "code": job.error.get("code", "internal_error"),
+        "detail": str(job.error.get("message", ""))[:LONGEST_DETAIL],
+        "retryable": bool(job.error.get("retryable")),
+    }
+    data = {name: getattr(job, name) for name in ("id", "analysis", "state", "attempt", "labels")}
+    body = message(f"job.{job.state}", now, {**data, "event": job.last_event, "error": error})
+    for webhook in told:
+        add_delivery(session, webhook, now, body)
+
+
+def add_delivery(session: Session, webhook_id: str, now: datetime, body: str) -> str:
+    """Let a webhook get a message: its id, which is the same in every attempt."""
+    message_id = f"msg_{uuid.uuid4().hex}"
+    row = Delivery(id=message_id, webhook_id=webhook_id, created_at=now, body=body, attempts=0, next_at=now)
+    session.add(row)
+    return message_id
+
+
+def message(kind: str, now: datetime, data: Mapping[str, Any]) -> str:
+    """The body of what a webhook gets (Standard Webhooks 1.0); timestamps are in order as text too."""
+    timestamp = now.isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return json.dumps({"type": kind, "timestamp": timestamp, "data": data})
 
 
 def subscribe(session: Session, job: Job, computation: Computation) -> None:

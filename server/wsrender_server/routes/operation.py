@@ -115,10 +115,17 @@ def get_readiness(server: Server) -> Readiness:
     },
 )
 def get_metrics(server: Server, principal: Reader) -> Response:
-    """Requests, jobs, workers and disk."""
+    """Requests, jobs, workers, webhooks and disk."""
     store = server.store
-    kept, removed = store.usage(), store.removed
-    text = server.metrics.text(store.queue_summary(), server.jobs.workers(), store.files.free_bytes(), kept, removed)
+    text = server.metrics.text(
+        store.queue_summary(),
+        server.jobs.workers(),
+        store.files.free_bytes(),
+        store.usage(),
+        store.removed,
+        store.deliveries,
+        store.waiting_deliveries(),
+    )
     return Response(text, media_type=MEDIA_TYPE)
 
 
