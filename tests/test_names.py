@@ -1,6 +1,7 @@
 """A name means one thing: no module hides a function, and no two classes are called alike."""
 
 import ast
+from collections import defaultdict
 
 from tests.test_import_cycles import modules
 
@@ -32,3 +33,15 @@ def test_no_module_is_called_like_what_its_package_exports():
         if f"{package}.{name}" in found
     }
     assert hidden == {"wsrender.run"}
+
+
+def test_no_two_classes_of_a_package_are_called_alike():
+    """The server's rows and the client's objects may share a word: they are packages of their own."""
+    found = defaultdict(list)
+    for module, (_, tree) in trees().items():
+        package = module.partition(".")[0]
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ClassDef):
+                found[package, node.name].append(module)
+    assert len(found) > 500
+    assert {name: where for (_, name), where in found.items() if len(where) > 1} == {}

@@ -16,7 +16,7 @@ TOO_SLOW = b"HTTP/1.1 408 Request Timeout\r\nconnection: close\r\ncontent-length
 TOO_MANY = b"HTTP/1.1 429 Too Many Requests\r\nconnection: close\r\nretry-after: 5\r\ncontent-length: 0\r\n\r\n"
 
 
-class Limits:
+class ConnectionLimits:
     """The limits of the settings, and how many connections each address has."""
 
     def __init__(self, settings: Settings):
@@ -27,7 +27,7 @@ class Limits:
 class Connection(H11Protocol):
     """A connection that is closed where the head of a request does not come in time, or its client has too many."""
 
-    def __init__(self, *, limits: Limits, **options: Any):
+    def __init__(self, *, limits: ConnectionLimits, **options: Any):
         super().__init__(**options)
         self._limits = limits
         self._counted: str | None = None

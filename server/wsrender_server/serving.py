@@ -10,7 +10,7 @@ from typing import Any
 import uvicorn
 
 from wsrender.errors import ServerConnectionError, WsrenderError
-from wsrender_server.connections import Connection, Limits
+from wsrender_server.connections import Connection, ConnectionLimits
 from wsrender_server.settings import Settings
 
 Application = Callable[[Any, Any, Any], Awaitable[None]]  # ASGI
@@ -57,7 +57,7 @@ def serve_until_stopped(
     guarded = _FaultsAtStart(app)
     config = uvicorn.Config(
         guarded,
-        http=partial(Connection, limits=Limits(settings)),  # pyright: ignore[reportArgumentType]
+        http=partial(Connection, limits=ConnectionLimits(settings)),  # pyright: ignore[reportArgumentType]
         proxy_headers=False,  # the settings say which proxies are trusted
         log_config=None,
         access_log=False,

@@ -160,7 +160,7 @@ def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
 def test_balls_that_are_looked_up_hold_the_cover_and_lie_within_it(kind):
     """Whose capsules hold the solid, and lie within it; of a grid whose border is near, upper bounds end there."""
     solid, margin, epsilon, random = SOLIDS[kind], 0.01, 1e-5, np.random.default_rng(0)
-    own, grid = cover(solid), grids.Grid(np.zeros(3), 0.001, 1.0, np.zeros((1, 1, 1), np.uint32))
+    own, grid = cover(solid), grids.DistanceGrid(np.zeros(3), 0.001, 1.0, np.zeros((1, 1, 1), np.uint32))
     T = ws.Transform(position_m=(0.1, 0.2, 0.3), rpy_deg=(10, 20, 30)).matrix()
     balls = grids.lookup(grid, 0, T, own, margin, epsilon).balls
     centers, (free, touch) = (balls[:, :3] - T[:3, 3]) @ T[:3, :3], balls[:, 3:].T * grid.quantum

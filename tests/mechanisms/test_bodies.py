@@ -1,4 +1,4 @@
-"""Bodies of mechanisms that keep apart, against MuJoCo's distances of a scene made anew for every pose."""
+"""Solids of mechanisms that keep apart, against MuJoCo's distances of a scene made anew for every pose."""
 
 import mujoco
 import numpy as np
@@ -13,7 +13,7 @@ from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.legs import DeltaLeg
 from wsrender.documents.mechanism import Delta, LegsMechanism, StewartGough
 from wsrender.errors import DocumentError, InputError
-from wsrender.mechanisms.bodies import PAIRS, TRIANGLES, Bodies
+from wsrender.mechanisms.bodies import PAIRS, TRIANGLES, Solids
 from wsrender.mechanisms.five_bar.region import workspace
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.mechanism import mechanism_of
@@ -170,7 +170,7 @@ def test_each_kind_of_pair_touches_where_it_does(pair):
             tuple(Solid(name, "sphere", BASE, at(place), ball) for place in places)
             for name, places in (("own", own), ("other", other))
         ]
-        bodies = Bodies(0.02, 0.01, gap, *solids, ((0, 1),) if pair.endswith("leg 2") else ())
+        bodies = Solids(0.02, 0.01, gap, *solids, ((0, 1),) if pair.endswith("leg 2") else ())
         legs = [{"link": np.array([line], float)} for line in links]
         legs[1]["crank"] = np.array([CRANK], float)
         found, names = bodies.collisions(legs, np.eye(4)[None])
@@ -223,8 +223,8 @@ def test_the_estimate_counts_the_points_of_a_refined_volume(monkeypatch):
     bodies = {"link_radius_m": 0.02, "environment": {"items": [POST]}}
     job = {"analysis": "parallel_workspace", "mechanism": {"library": "stewart_gough", "bodies": bodies}}
     planned = plan(job | {"voxel_size_m": 0.15, "refined_volume": 0.05})
-    partial, asked, collisions = run_shard(planned, 0), [], Bodies.collisions
-    monkeypatch.setattr(Bodies, "collisions", lambda own, *of: (asked.append(len(of[1])), collisions(own, *of))[1])
+    partial, asked, collisions = run_shard(planned, 0), [], Solids.collisions
+    monkeypatch.setattr(Solids, "collisions", lambda own, *of: (asked.append(len(of[1])), collisions(own, *of))[1])
     finish(planned, partial)
     without = plan(job | {"voxel_size_m": 0.15, "refined_volume": None}).cost.seconds + refined_seconds(0.05)
     assert planned.cost.seconds - without == pytest.approx(sum(asked) / APART_PER_S, rel=0.5)
@@ -394,7 +394,7 @@ def test_the_estimate_counts_triangles(tmp_path, monkeypatch):
     job = {"analysis": "parallel_workspace", "mechanism": mechanism, "voxel_size_m": 0.05}
     faces, found = len(trimesh.load_mesh(tmp_path / "corner.stl").faces), [plan(job).cost.seconds]
     for effort in (1.0, 0.0):
-        monkeypatch.setattr(Bodies, "effort", effort)
+        monkeypatch.setattr(Solids, "effort", effort)
         found.append(plan(job).cost.seconds)
     share = (found[0] - found[2]) / (found[1] - found[2])
     assert share == pytest.approx(1 + 2 * faces / TRIANGLES + faces**2 / PAIRS)

@@ -14,7 +14,7 @@ from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
 from wsrender.pipeline.constraints.constraint import Constraint, in_order
 from wsrender.pipeline.constraints.leg_distance import LegDistance
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
@@ -76,7 +76,7 @@ def test_a_sweep_counts_what_the_twins_admit(shapes, names, precision, device, a
 
 def test_values_are_those_of_admitted_samples_alone(device):
     robot = ws.load_robot("ur5e")
-    region = Region(half_space=((0, 0, 0.3), (0, 0, 1)))
+    region = RegionConstraint(half_space=((0, 0, 0.3), (0, 0, 1)))
     names = ("manipulability",)
     each, found = swept(robot, names, (region,), ws.Sobol(COUNT), "float64", device)
     rows = replace(each, kept_rows=frozenset())
@@ -179,7 +179,7 @@ def test_configurations_are_told_why_they_are_rejected(tmp_path, added):
 def test_all_are_constraints_and_asked_in_one_order(added):
     legs = LegDistance(0.1, ((0, 1),))
     (added_one,) = constraints_of(Constraints(elbow_up=True))
-    each = (added_one, legs, Region(ball=((0, 0, 0), 1)))
+    each = (added_one, legs, RegionConstraint(ball=((0, 0, 0), 1)))
     assert all(isinstance(one, Constraint) and hash(one) == hash(replace(one)) for one in each)
     assert [one.name for one in in_order(each)] == ["region", "leg_distance", "elbow_up"]
 
@@ -326,7 +326,7 @@ def test_the_headline_is_what_is_reached_in_the_region(region, expected):
 def test_nothing_is_reached_in_a_region_out_of_reach():
     from wsrender.reach.measure_refinement import refined_measure
 
-    found = refined_measure(ws.load_robot("spherical").chain, 0.05, region=Region(ball=((9, 9, 9), 0.1)))
+    found = refined_measure(ws.load_robot("spherical").chain, 0.05, region=RegionConstraint(ball=((9, 9, 9), 0.1)))
     assert (found.value, found.ci95) == (0.0, (0.0, 0.0))
 
 

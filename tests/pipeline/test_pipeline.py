@@ -10,7 +10,7 @@ import wsrender as ws
 from wsrender.documents.constraints import Constraints
 from wsrender.engine import configurations, devices_of, evaluate_poses, evaluate_samples, sampled_positions, sweep
 from wsrender.engine.sums import scales_of
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline, tip_pipeline
@@ -31,7 +31,7 @@ JOB = {
     "refined_volume": None,
 }
 Q = np.random.default_rng(5).uniform(-1.0, 1.0, (300, 6))
-ABOVE = Region(half_space=((0.0, 0.0, 0.6), (0.0, 0.0, 1.0)))
+ABOVE = RegionConstraint(half_space=((0.0, 0.0, 0.6), (0.0, 0.0, 1.0)))
 
 
 def planned(**changes):

@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 import pytest
 
-from wsrender.reach.volume_estimate import Event, _Estimation, _Stratum, estimate_volumes, wilson
+from wsrender.reach.volume_estimate import Inside, _Estimation, _Stratum, estimate_volumes, wilson
 from wsrender.volume.voxels import inner_and_outer
 
 EDGE, HALF = 0.1, 1.8
-IN_ONE = {"in": Event(1, 1)}
+IN_ONE = {"in": Inside(1, 1)}
 LENS = 5 * np.pi / 12  # unit balls at x = ±0.5
 UNION = 8 * np.pi / 3 - LENS
 
@@ -53,7 +53,7 @@ def test_intervals_hold_the_volume_as_often_as_they_claim(tolerance):
 
 
 def test_exactly_so_many_sets():
-    events = {"any": Event(1, 2), "all": Event(2, 2), "one": Event(1, 1, precise=False)}
+    events = {"any": Inside(1, 2), "all": Inside(2, 2), "one": Inside(1, 1, precise=False)}
     cells = strata(in_balls)
     held = dict.fromkeys(events, 0)
     for seed in range(100):
@@ -145,7 +145,7 @@ def test_wilson():
 def test_sets_that_are_proven_apart_share_nothing():
     """Of cells into which one set reaches, no point is drawn to see that two do not."""
     cells = [np.argwhere(np.ones((36, 36, 36), bool)) - 18]
-    events = {"any": Event(1, 2, precise=False), "all": Event(2, 2)}
+    events = {"any": Inside(1, 2, precise=False), "all": Inside(2, 2)}
     alone = partial(in_balls, at=1.0, radius=0.6)
     unknown = estimate_volumes(alone, cells, EDGE, events, 0.01)
     proven = estimate_volumes(alone, cells, EDGE, events, 0.01, sets=[1])

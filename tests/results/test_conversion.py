@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -51,7 +51,7 @@ def test_a_map_of_cells_has_its_axes():
     y, x = (each.ravel() for each in np.meshgrid([10.5, 11.5, 12.5], [0.1, 0.3], indexing="xy"))
     table = Table(
         {"x_m": x, "yaw_deg": y, "score": 100 * x + y}, {"x_m": "m", "yaw_deg": "deg"},
-        Grid(("x_m", "yaw_deg"), (0.0, 10.0), (0.2, 1.0), (2, 3)),
+        CellGrid(("x_m", "yaw_deg"), (0.0, 10.0), (0.2, 1.0), (2, 3)),
     )  # fmt: skip
     result = ws.Result({"analysis": "odd"}, tables={"placements": table, "plain": Table({"x": x})})
     found = result.to_xarray()

@@ -11,7 +11,7 @@ import wsrender as ws
 from tests.viewer.written import HEIGHT, OFF, WIDTH, Written, at, decoded, launch, looking, manifest, pixels
 from wsrender.results.view import robot_view
 from wsrender.results.view.robots import chain_entry
-from wsrender.results.view.surfaces import Part, glb
+from wsrender.results.view.surfaces import ColoredMesh, glb
 from wsrender.robots import library
 from wsrender.robots.chain import Chain
 
@@ -331,8 +331,8 @@ def test_nothing_is_drawn_at_rest(views):
 def test_a_surface_that_hides_a_volume_is_fetched_when_it_is_shown(views):
     """And may then fail, which is said."""
     written = Written()
-    box = glb([Part(np.array([[-0.3, 0, -0.3], [0.3, 0, -0.3], [0, 0, 0.3]]), np.array([[0, 1, 2]]), (1.0, 0.0, 0.0),
-                    "5 plane: joint1 upper")])  # fmt: skip
+    vertices = np.array([[-0.3, 0, -0.3], [0.3, 0, -0.3], [0, 0, 0.3]])
+    box = glb([ColoredMesh(vertices, np.array([[0, 1, 2]]), (1.0, 0.0, 0.0), "5 plane: joint1 upper")])
     written.blobs["surface"] = box
     values = np.full(SHAPE, np.nan)
     values[0, 0, 0] = 1.0  # beside the surface

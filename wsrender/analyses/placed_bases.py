@@ -4,17 +4,17 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from wsrender.documents.placements import ANGLES, COORDINATES, PlacementSpace
-from wsrender.volume.table import Grid
+from wsrender.volume.table import CellGrid
 
 UNITS = {name: "deg" if name in ANGLES else "m" for name in COORDINATES}
 
 
-def grid_of(over: PlacementSpace, axes: Iterable[str]) -> Grid:
+def grid_of(over: PlacementSpace, axes: Iterable[str]) -> CellGrid:
     """The cells of some of the ranges of a space."""
     axes = tuple(axes)
     steps = tuple(over.ranges[name][2] for name in axes)
     origin = [float(over.values(name)[0] - step / 2) for name, step in zip(axes, steps, strict=True)]
-    return Grid(axes, tuple(origin), steps, tuple(over.shape[COORDINATES.index(name)] for name in axes))
+    return CellGrid(axes, tuple(origin), steps, tuple(over.shape[COORDINATES.index(name)] for name in axes))
 
 
 def place_of(entry: Mapping[str, Any]) -> str:

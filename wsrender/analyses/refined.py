@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.reach.free_volume import ALL_BLOCKED, FREE
 from wsrender.reach.measure_refinement import (
     RefinedMeasure,
@@ -13,7 +13,7 @@ from wsrender.reach.measure_refinement import (
     refined_measure,
     refined_measures,
 )
-from wsrender.reach.volume_estimate import Event
+from wsrender.reach.volume_estimate import Inside
 from wsrender.reach.voxel_labels import label_voxels
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import UNITS
@@ -27,7 +27,7 @@ VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
 
 
 @dataclass(frozen=True, eq=False)
-class Refined:
+class RefinedRobot:
     """What inverse kinematics says of one robot: the entry of its refined measure, the labelled voxels; None unasked.
 
     ``measure``: see `measure_entry`.
@@ -71,9 +71,9 @@ def _parts(found: Mapping[str, RefinedMeasure]) -> dict[str, Any]:
     return {"free": free, "blocked": blocked | {"by": of_each}, "undecided": undecided}
 
 
-def divided(constraints: Sequence[Constraint]) -> tuple[Region | None, list[Constraint]]:
+def divided(constraints: Sequence[Constraint]) -> tuple[RegionConstraint | None, list[Constraint]]:
     """The region, which is asked of targets themselves, and the other constraints."""
-    region = next((each for each in constraints if isinstance(each, Region)), None)
+    region = next((each for each in constraints if isinstance(each, RegionConstraint)), None)
     return region, [each for each in constraints if each is not region]
 
 
@@ -93,7 +93,7 @@ def labelled(
 
 def refined_together(
     chains: Sequence[Kinematics],
-    events: Mapping[str, Event],
+    events: Mapping[str, Inside],
     tolerance: float,
     device: str,
     progress: Progress | None,

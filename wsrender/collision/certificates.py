@@ -26,7 +26,7 @@ FAR_M = 2.0  # beyond which distances need not be told apart
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class LabelTable:
     """Labels (K1, K2) int8 of a pair over the ranges of two coordinates, FREE, HIT or MIXED; K2 = 1 of one alone."""
 
     pair: int
@@ -40,7 +40,7 @@ class Certificates:
 
     never: tuple[int, ...]
     always: tuple[int, ...]
-    tables: tuple[Table, ...]
+    tables: tuple[LabelTable, ...]
     left: tuple[int, ...]
 
 
@@ -62,7 +62,7 @@ def certificates(
             if (labels == FREE).all():
                 never.append(number)
                 continue
-            tables.append(Table(number, pair.two_coordinates, labels))
+            tables.append(LabelTable(number, pair.two_coordinates, labels))
             if (labels == HIT).all():
                 always.append(number)
         elif (proven := pair.proven()) == FREE:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.collision.covers import Cover, from_segment
-from wsrender.collision.grids import CELLS, LEVEL, QUANTA, ROUNDING, Grid
+from wsrender.collision.grids import CELLS, LEVEL, QUANTA, ROUNDING, DistanceGrid
 from wsrender.collision.solids import BASE, Pairs, Solid
 
 LEAST = 8  # solids that stand; fewer are tested one by one
@@ -31,7 +31,7 @@ class Crowd:
     """
 
     solids: tuple[int, ...]
-    grid: Grid
+    grid: DistanceGrid
     sets: np.ndarray
     balls: Mapping[int, np.ndarray]
 
@@ -113,7 +113,7 @@ def _cells(
     box: tuple[np.ndarray, np.ndarray],
     limit: float,
     cells: int,
-) -> tuple[Grid, np.ndarray]:
+) -> tuple[DistanceGrid, np.ndarray]:
     """The grid of about so many cells of a box, and its sets."""
     low, high = box
     cell = float((np.prod(high - low) / cells) ** (1 / 3))
@@ -137,4 +137,4 @@ def _cells(
     sets, number = np.unique(np.vstack([np.zeros_like(rows[:1]), rows]), axis=0, return_inverse=True)
     number = number.ravel()[1:].reshape(shape)
     low16 = np.clip(least, -32768, NOTHING).astype(np.int16).view(np.uint16)
-    return Grid(low, cell, 0.0, low16 | number.astype(np.uint32) << 16), sets
+    return DistanceGrid(low, cell, 0.0, low16 | number.astype(np.uint32) << 16), sets

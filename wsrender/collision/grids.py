@@ -26,7 +26,7 @@ LEVEL = 1  # of covers
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class DistanceGrid:
     """``words`` (X, Y, Z) uint32: bounds of the signed distance over a cell, int16, in ``cell`` / QUANTA.
 
     The lower one stands in the low half. ``origin`` (3,) [m]: the lowest corner, in the base's frame; ``pad`` [m]: the
@@ -51,7 +51,7 @@ class Grid:
         return lower * self.quantum, upper * self.quantum
 
 
-def surface_grid(corners: np.ndarray, pad: float) -> Grid:
+def surface_grid(corners: np.ndarray, pad: float) -> DistanceGrid:
     """The grid of the solid that triangles (F, 3, 3) [m] enclose, ``pad`` [m] wider than it all round."""
     low, high = corners.min(axis=(0, 1)) - pad, corners.max(axis=(0, 1)) + pad
     cell = float((np.prod(high - low) / CELLS) ** (1 / 3))
@@ -65,7 +65,7 @@ def surface_grid(corners: np.ndarray, pad: float) -> Grid:
     quantum = cell / QUANTA
     bounds = np.floor((lower - beyond) / quantum), np.ceil((upper + beyond) / quantum)
     low16, high16 = (np.clip(each, -32768, 32767).astype(np.int16).view(np.uint16) for each in bounds)
-    return Grid(low, cell, pad, (low16 | high16.astype(np.uint32) << 16).reshape(shape))
+    return DistanceGrid(low, cell, pad, (low16 | high16.astype(np.uint32) << 16).reshape(shape))
 
 
 def _distances(corners: np.ndarray, points: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
@@ -101,7 +101,7 @@ class Lookup:
     exceed the fourth number, and touch where the upper one at any is below the fifth, in the grid's quanta.
     """
 
-    grid: Grid
+    grid: DistanceGrid
     joint: int
     balls: np.ndarray
 
@@ -122,7 +122,7 @@ def reach_of(cover: Cover, margin: float) -> float:
     return float(max(cover.outer[0 if cover.exact else LEVEL].radius)) * 1.2 + margin
 
 
-def lookup(grid: Grid, joint: int, T: np.ndarray, cover: Cover, margin: float, epsilon: float) -> Lookup:
+def lookup(grid: DistanceGrid, joint: int, T: np.ndarray, cover: Cover, margin: float, epsilon: float) -> Lookup:
     """How a solid at ``T`` (4, 4) in the frame of its joint is looked up; ``epsilon``: what float32 may be off [m]."""
     never, rows = float(-(1 << 20)), []
     level = 0 if cover.exact else LEVEL

@@ -13,7 +13,7 @@ from wsrender.collision.certificates import CELLS, FREE, Certificates, certifica
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
 from wsrender.collision.crowd import Crowd, crowd, crowded
 from wsrender.collision.distance import Distances, frames_of
-from wsrender.collision.grids import Grid, Lookup, lookup, reach_of, surface_grid
+from wsrender.collision.grids import DistanceGrid, Lookup, lookup, reach_of, surface_grid
 from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.supports import center_of, core, vertices_by_direction
 from wsrender.robots.chain import Chain
@@ -545,7 +545,7 @@ def _surfaces(solids: tuple[Solid, ...], ranges: np.ndarray, met: set[int]) -> d
 
 def _looked_up(lookups: dict[int, Lookup]) -> dict[str, np.ndarray]:
     """The arrays of lookups and their grids."""
-    grids: list[Grid] = list({id(each.grid): each.grid for each in lookups.values()}.values())
+    grids: list[DistanceGrid] = list({id(each.grid): each.grid for each in lookups.values()}.values())
     rows, first = [], 0
     for pair, each in lookups.items():
         grid = next(k for k, grid in enumerate(grids) if grid is each.grid)
@@ -567,7 +567,7 @@ def lookups_of(program: Program) -> dict[int, Lookup]:
     numbers, shapes = program.grid_numbers.tolist(), program.grid_shapes.tolist()
     for (*origin, cell), (*shape, first) in zip(numbers, shapes, strict=True):
         words = program.grid_words[first : first + np.prod(shape)].reshape(shape)
-        grids.append(Grid(np.array(origin), cell, 0.0, words))
+        grids.append(DistanceGrid(np.array(origin), cell, 0.0, words))
     for pair, grid, frame, first, count in program.lookups.tolist():
         found[pair] = Lookup(grids[grid], frame + BASE, program.balls[first : first + count].astype(float))
     return found

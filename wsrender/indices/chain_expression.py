@@ -12,7 +12,7 @@ from wsrender.short_repr import short_repr
 MOST_JOINTS = 200  # that a function may ask for; whether a robot has them is seen when a job is planned
 
 
-class Frame(NamedTuple):
+class JointFrame(NamedTuple):
     """Where a joint stands in the world after its motion: x, y, z [m], and three axes of three numbers, z its own."""
 
     position: Any
@@ -40,8 +40,8 @@ class Expressed:
 
     ``function(q, position, axes, **asks, **options)``: ``q``, joint values [rad or m]; ``position``, x, y, z of the tip
     in the world [m]; ``axes``, its three axes in the world, three numbers each; the named ``options``, whose values are
-    the last numbers of `Constraint.pack`, after the origin. ``asks``, of ASKED: ``frames``, a `Frame` of each of the
-    chain's joints; ``J``, six rows of n, linear then angular, at the tip in the world; ``g``, what the joints take to
+    the last numbers of `Constraint.pack`, after the origin. ``asks``, of ASKED: ``frames``, a `JointFrame` of each of
+    the joints; ``J``, six rows of n, linear then angular, at the tip in the world; ``g``, what the joints take to
     hold the arm against gravity, n [N m or N]; ``limits``, `JointLimits`; ``M``, the joint-space inertia, n rows of n.
     """
 
@@ -83,7 +83,7 @@ def _arranged(name: str, numbers: tuple[Any, ...], n: int) -> Any:
     width = 3 if name == "frames" else n
     rows = [numbers[k : k + width] for k in range(0, len(numbers), width)]
     if name == "frames":
-        return [Frame(rows[k], rows[k + 1 : k + 4]) for k in range(0, len(rows), 4)]
+        return [JointFrame(rows[k], rows[k + 1 : k + 4]) for k in range(0, len(rows), 4)]
     return rows if name in ("J", "M") else JointLimits(*rows)
 
 

@@ -30,7 +30,7 @@ from wsrender.kinetostatics.conditioning import (
     decomposed,
 )
 from wsrender.kinetostatics.kinematics import Posture, PostureKinematics
-from wsrender.kinetostatics.ramps import JointLimits, ObstacleDistance, SurfaceRamp
+from wsrender.kinetostatics.ramps import JointLimitRamp, ObstacleDistance, SurfaceRamp
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.indices import task_rows
 from wsrender.robot.model_robot import configuration_rows
@@ -95,7 +95,7 @@ class ForceField:
         peak, length = self.device.peak_force_n, self.length.length_m
         self.conditioning = TaskConditioning(self.kinematics, rows, length)
         limits = choice.joint_limits
-        self.joint_limits = JointLimits(chain, limits or JointLimitForce(), peak, length)
+        self.joint_limits = JointLimitRamp(chain, limits or JointLimitForce(), peak, length)
         self._has_limits = limits is not None
         self._ramp = ConditioningRamp(choice.conditioning, peak, length) if choice.conditioning else None
         self._boundary = self._obstacles = None

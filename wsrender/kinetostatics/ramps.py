@@ -12,7 +12,7 @@ from wsrender.robots.chain import Chain
 from wsrender.world.distances import FAR, NearestShape
 
 
-class JointLimits:
+class JointLimitRamp:
     """The joint-limit force of [CB]: a linear ramp over a margin Δ before each limit; joints without limits have none.
 
     ``peak`` is the largest force F_max [N], ``length`` the characteristic length [m].

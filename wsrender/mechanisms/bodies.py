@@ -1,4 +1,4 @@
-"""Bodies of a mechanism: links and cranks as capsules, what the platform carries, and what stands around.
+"""Solids of a mechanism: links and cranks as capsules, what the platform carries, and what stands around.
 
 They keep apart as MuJoCo's shapes do: a crank from its own link never, nor legs that share a joint. A link that ends at
 the platform touches it there: of it what is farther along than a gap keeps apart, or nothing without a gap.
@@ -25,7 +25,7 @@ TRIANGLES, PAIRS = 1.4e3, 1.5e5  # of surfaces, and of two of them, that take as
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class Solids:
     """Solids in the frames of the ``platform`` and of the base, ``around``; capsules of ``radius_m`` along the legs.
 
     ``apart``: pairs of legs that share no joint; ``gap_m``: None where links may touch the platform.
@@ -145,7 +145,7 @@ def _along(segment: np.ndarray) -> np.ndarray:
 
 def bodies_of(
     choice: MechanismBodies | None, T_world_base: np.ndarray, apart: Sequence[tuple[int, int]]
-) -> Bodies | None:
+) -> Solids | None:
     """The bodies of a document; raises InputError and ModelError for shapes that cannot be had."""
     if choice is None:
         return None
@@ -156,7 +156,7 @@ def bodies_of(
             (choice.environment, "environment", T_world_base),
         )
     )
-    return Bodies(choice.link_radius_m, choice.margin_m, choice.platform_gap_m, platform, around, tuple(apart))
+    return Solids(choice.link_radius_m, choice.margin_m, choice.platform_gap_m, platform, around, tuple(apart))
 
 
 def _standing(environment: Environment | None, field: str) -> tuple[Any, ...]:

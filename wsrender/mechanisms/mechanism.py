@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.documents.legs import ClosedFormLeg, Cone, DeltaLeg, Leg, PUSLeg, RUSLeg, SerialLeg, UPSLeg
 from wsrender.documents.mechanism import Delta, LegsMechanism, MechanismSpec, SixPUS, StewartGough
 from wsrender.documents.robot import Transform
-from wsrender.mechanisms.bodies import Bodies, bodies_of
+from wsrender.mechanisms.bodies import Solids, bodies_of
 from wsrender.mechanisms.serial_leg import NumericLeg, numeric_leg
 from wsrender.pipeline.constraints.leg_distance import LegDistance
 from wsrender.robot import Robot
@@ -53,7 +53,7 @@ class Mechanism:
     T_world_base: np.ndarray
     home: np.ndarray | None
     numeric: tuple[NumericLeg, ...] = ()
-    bodies: Bodies | None = None
+    bodies: Solids | None = None
 
     @property
     def n(self) -> int:

@@ -5,7 +5,7 @@
 
     found = refined_volumes(
         [left.chain, right.chain],
-        {"any": Event(1, 2), "all": Event(2, 2), "exactly_1": Event(1, 1, precise=False)},
+        {"any": Inside(1, 2), "all": Inside(2, 2), "exactly_1": Inside(1, 1, precise=False)},
         tolerance=0.005,
     )
     found.volumes["all"].value, found.volumes["all"].low, found.volumes["all"].high  # m³
@@ -18,11 +18,11 @@ from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.reach.measure_refinement import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reach.posture_sets import Postures, postures
 from wsrender.reach.targets import Reachability, reachable, reachable_labels
-from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
+from wsrender.reach.volume_estimate import Inside, VolumeEstimate, estimate_volumes
 from wsrender.reach.volume_refinement import RefinedVolumes, refined_volume, refined_volumes
 
 __all__ = [
-    "Event",
+    "Inside",
     "InverseSolver",
     "Postures",
     "Reachability",

@@ -18,7 +18,7 @@ from wsrender.reach.reached_set import (
     hidden_share,
     tests_of,
 )
-from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
+from wsrender.reach.volume_estimate import Inside, VolumeEstimate, estimate_volumes
 from wsrender.reach.volume_refinement import RefinedVolumes, block_of, strata_of
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.voxels import neighbours_and_itself
@@ -118,9 +118,9 @@ class Together:
         self.classes = [each.classes(self.block, LEVELS.get(len(sets), 1)) for each in sets]
 
     @property
-    def events(self) -> dict[tuple[str, str], Event]:
+    def events(self) -> dict[tuple[str, str], Inside]:
         """What depths mean, by name and part; what is free is to be measured to the tolerance."""
-        events, first = dict[tuple[str, str], Event](), 0
+        events, first = dict[tuple[str, str], Inside](), 0
         together = next((each.names for each in self.pairs.values()), ())
         for name, least in self.least.items():
             reasons = (*self.sets[0].names, *(together if least > 1 else ()))
@@ -132,7 +132,7 @@ class Together:
                 **{each: (k, k) for k, each in enumerate(reasons, 1)},
             }
             for part, (low, high) in own.items():
-                events[name, part] = Event(low, high, part == FREE, columns, least)
+                events[name, part] = Inside(low, high, part == FREE, columns, least)
             first += free
         return events
 

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.reach.evidence import REACHABLE
 from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.reached_set import tolerance_m
@@ -23,7 +23,7 @@ def share_of_holes(
     seed: int = 0,
     device: str = "cpu",
     threads: int | None = None,
-    region: Region | None = None,
+    region: RegionConstraint | None = None,
 ) -> float:
     """How many holes there are to each occupied voxel, estimated: empty voxels whose centre and corners are reachable.
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.reach.admission import Admission
 from wsrender.reach.dimension import FLAT, TipSet, tip_set
 from wsrender.reach.free_volume import ALL_BLOCKED, FREE, FreeSet, free_volumes
 from wsrender.reach.pair_search import PairSearch
 from wsrender.reach.reached_set import FalseNegatives, ReachedSet, tolerance_m
-from wsrender.reach.volume_estimate import Event, VolumeEstimate
+from wsrender.reach.volume_estimate import Inside, VolumeEstimate
 from wsrender.reach.volume_refinement import RefinedVolumes, by_the_origin, decided_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import QUANTITIES, UNITS
@@ -70,11 +70,11 @@ def refined_measure(
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
-    region: Region | None = None,
+    region: RegionConstraint | None = None,
 ) -> RefinedMeasure:
     """What the end effector of one chain reaches, to a relative ``tolerance``; as in `refined_measures`."""
     options = {"seed": seed, "device": device, "threads": threads, "progress": progress, "region": region}
-    return refined_measures([chain], {"reachable": Event(1, 1)}, tolerance, **options)["reachable"]
+    return refined_measures([chain], {"reachable": Inside(1, 1)}, tolerance, **options)["reachable"]
 
 
 def free_measures(
@@ -88,7 +88,7 @@ def free_measures(
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
-    region: Region | None = None,
+    region: RegionConstraint | None = None,
 ) -> dict[str, dict[str, RefinedMeasure]]:
     """What so many of the placed ``chains`` reach in configurations that each one's ``constraints`` admit.
 
@@ -132,14 +132,14 @@ def free_measures(
 
 def refined_measures(
     chains: Sequence[Kinematics],
-    events: Mapping[str, Event],
+    events: Mapping[str, Inside],
     tolerance: float,
     *,
     seed: int = 0,
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
-    region: Region | None = None,
+    region: RegionConstraint | None = None,
 ) -> dict[str, RefinedMeasure]:
     """By event, what so many of the placed ``chains`` reach, to a relative ``tolerance`` (half the 95 % interval).
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, sampled_positions
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.cover import covered_cells
 from wsrender.reach.dimension import TipSet
@@ -91,7 +91,7 @@ class ReachedSet:
         seed: int,
         device: str,
         threads: int | None,
-        region: Region | None = None,
+        region: RegionConstraint | None = None,
         T_region_base: np.ndarray | None = None,
     ):
         self.dimension, self.solid = dimension, solid
@@ -112,7 +112,7 @@ class ReachedSet:
         T_world_own: np.ndarray,
         dimension: int,
         T_region_base: np.ndarray,
-        region: Region | None,
+        region: RegionConstraint | None,
         **how: Any,
     ) -> "ReachedSet":
         """What a chain, whose positions are ``filled``, reaches of the space of a frame's first axes."""

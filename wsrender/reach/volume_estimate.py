@@ -33,7 +33,7 @@ PURE_SHARE = 0.4  # of the half width that strata without any variance may take 
 
 
 @dataclass(frozen=True)
-class Event:
+class Inside:
     """Points inside at least ``least`` and at most ``most`` of the sets; ``precise``: to the tolerance asked.
 
     ``sets``: the first of those that are meant, and the one after them; None: all. ``reaching``: at least so many sets
@@ -99,7 +99,7 @@ def estimate_volumes(
     membership: Membership,
     strata: Iterable[np.ndarray],
     cell_edge_m: float,
-    events: Mapping[Any, Event],
+    events: Mapping[Any, Inside],
     tolerance: float,
     *,
     sets: Sequence[int] | None = None,
@@ -180,7 +180,7 @@ class _Estimation:
     def _volumes(self) -> dict[Any, VolumeEstimate]:
         return {name: self._volume(k, event) for k, (name, event) in enumerate(self.events.items())}
 
-    def _volume(self, k: int, event: Event) -> VolumeEstimate:
+    def _volume(self, k: int, event: Inside) -> VolumeEstimate:
         """Intervals of the strata combined by the square-and-add method (Zou & Donner 2008)."""
         size = np.array([s.volume for s in self.strata])
         count = np.array([s.count for s in self.strata])

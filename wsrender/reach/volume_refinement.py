@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.reach.dimension import TipSet, tip_set
 from wsrender.reach.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
-from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
+from wsrender.reach.volume_estimate import Inside, VolumeEstimate, estimate_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import LatticeBlock, block_around
 
@@ -41,13 +41,13 @@ def refined_volume(chain: Kinematics, tolerance: float, **options) -> tuple[Volu
     In the base frame, where the box that holds the reach is smallest, and near the base: no volume depends on a
     placement.
     """
-    found = refined_volumes([chain], {"reachable": Event(1, 1)}, tolerance, **options)
+    found = refined_volumes([chain], {"reachable": Inside(1, 1)}, tolerance, **options)
     return found.volumes["reachable"], found
 
 
 def refined_volumes(
     chains: Sequence[Kinematics],
-    events: Mapping[str, Event],
+    events: Mapping[str, Inside],
     tolerance: float,
     *,
     seed: int = 0,
@@ -58,7 +58,7 @@ def refined_volumes(
 ) -> RefinedVolumes:
     """Volumes of the points that so many of the placed ``chains`` reach, to a relative ``tolerance``.
 
-    ``events``: by name the least and largest number of chains, such as ``{"any": Event(1, 2), "all": Event(2, 2)}``;
+    ``events``: by name the least and largest number of chains, such as ``{"any": Inside(1, 2), "all": Inside(2, 2)}``;
     those that are not ``precise`` are estimated from the same points. ``progress``: called with the points decided
     and about how many there will be. Surfaces and curves have no volume: 0 (`refined_measures` gives what they have).
     """
@@ -84,7 +84,7 @@ def decided_volumes(
     sets: Sequence[TipSet],
     T_world_own: np.ndarray,
     dimension: int,
-    events: Mapping[str, Event],
+    events: Mapping[str, Inside],
     tolerance: float,
     *,
     seed: int,
@@ -92,7 +92,7 @@ def decided_volumes(
     device: str,
     threads: int | None,
     progress: Callable[[int, int], None] | None,
-    region: Region | None = None,
+    region: RegionConstraint | None = None,
     bases: Sequence[np.ndarray] | None = None,
 ) -> RefinedVolumes:
     """`refined_volumes` in the space of the first ``dimension`` axes of a frame, in which all of ``chains`` move.

@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.engine import sampled_positions
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import RegionConstraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admissible_search import BLOCKED, AdmissibleSearch
 from wsrender.reach.admission import Admission
@@ -93,7 +93,7 @@ def _decided(
         return found.label, reasons_of(solver, found, points)
     label, reasons = np.zeros(len(points), np.int8), np.full(len(points), "", object)
     outside = np.zeros(len(points), bool)
-    for region in (each for each in admission.constraints if isinstance(each, Region)):
+    for region in (each for each in admission.constraints if isinstance(each, RegionConstraint)):
         outside = region.distance(points) > solver.accuracy.position_m
         found = solver.solve(points[outside])
         reached = found.label == REACHABLE

@@ -21,7 +21,7 @@ from wsrender.robots.chain import Chain
 from wsrender.robots.moving_base import MovingBase
 from wsrender.robots.pairs import meet, without
 from wsrender.robots.shapes import Shape
-from wsrender.world.surfaces import Surface
+from wsrender.world.surfaces import ClosedSurface
 
 if TYPE_CHECKING:
     from wsrender.robots.bodies import Bodies
@@ -214,7 +214,7 @@ def standing_solid(standing: Standing, T_world_base: np.ndarray) -> Solid:
             size, T = np.array(half_sizes(shape)), shape.matrix()
         case ConvexMesh():
             vertices, T = np.array(shape.vertices_m), shape.matrix()
-        case Surface():
+        case ClosedSurface():
             vertices, faces, T = shape.vertices, shape.faces, shape.matrix()
     kind: Any = KINDS.get(shape.shape, shape.shape)
     T_base: np.ndarray = np.linalg.inv(T_world_base) @ T

@@ -13,7 +13,7 @@ from wsrender.errors import InputError
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.constraint import Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
-from wsrender.pipeline.constraints.region import Point, Region
+from wsrender.pipeline.constraints.region import Point, RegionConstraint
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.constraints.torque import Torque
 from wsrender.robot.chain_indices import EFFORTS
@@ -60,7 +60,7 @@ def constraints_for(
 
 def _for_robot(each: Constraint, robot: Robot, gravity: Point) -> Constraint:
     """A constraint with what it asks of the robot. Raises InputError where it is not for such a robot."""
-    if isinstance(each, Region):
+    if isinstance(each, RegionConstraint):
         return each
     if (chain := robot.chain.geometry) is None:
         raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")

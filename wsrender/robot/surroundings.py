@@ -30,7 +30,7 @@ from wsrender.robots import shapes as models
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import LENGTH
 from wsrender.world.meshes import convex_parts
-from wsrender.world.surfaces import Surface, surface_of
+from wsrender.world.surfaces import ClosedSurface, surface_of
 
 BEYOND = 1e-6  # rad or m by which a configuration may be beyond a limit: rounding
 
@@ -44,7 +44,7 @@ class Standing:
 
     name: str
     item: str
-    shape: Shape | Surface
+    shape: Shape | ClosedSurface
     bits: tuple[int, int] | None = None
 
 
@@ -132,7 +132,7 @@ def _points(vertices: np.ndarray) -> Any:
     return tuple(map(tuple, vertices.tolist()))
 
 
-def as_document(shape: models.Shape, T: np.ndarray) -> Shape | Surface:
+def as_document(shape: models.Shape, T: np.ndarray) -> Shape | ClosedSurface:
     """A robot's shape, its frame at ``T`` (4, 4) in the world [m], in the words of an environment."""
     radius, half, _ = shape.size
     placed = transform_of(T)
@@ -153,5 +153,5 @@ def as_document(shape: models.Shape, T: np.ndarray) -> Shape | Surface:
         case "ellipsoid":
             return Ellipsoid(size_m=edges, **place)
         case "hfield":
-            return Surface(shape.vertices, shape.faces, T)
+            return ClosedSurface(shape.vertices, shape.faces, T)
     return ConvexMesh(vertices_m=_points(shape.vertices), **place)

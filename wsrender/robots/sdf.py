@@ -18,7 +18,7 @@ from wsrender.errors import ModelError
 from wsrender.robots import xml_source
 from wsrender.robots.mesh_files import ADDRESS
 from wsrender.robots.sdf_frames import MODEL, MOST_STEPS, WORLD, Frames, pose_of, relative_to
-from wsrender.robots.urdf import Inertial, Joint, Link, Loop, Mimic, Pose, Shape, Urdf
+from wsrender.robots.urdf import Inertial, Joint, Link, LoopJoint, Mimic, Pose, Urdf, UrdfShape
 from wsrender.robots.xml_source import number, numbers
 
 MAX_FILES = 100  # that are included
@@ -177,7 +177,7 @@ class _Reading:
         by_name = {joint.name: joint for joint in joints}
         if len(by_name) < len(joints):
             raise ModelError(self.model_field, "two joints have one name; names must be unique")
-        return Urdf(name, WORLD, links, by_name, tuple(Loop(each.name, each.parent, each.child) for each in loops))
+        return Urdf(name, WORLD, links, by_name, tuple(LoopJoint(each.name, each.parent, each.child) for each in loops))
 
     def _tree_joint(self, parent: str, child: str, joint: _JointRead | None) -> Joint:
         T_parent, T_child = self.frames.pose(parent), self.frames.pose(child)
@@ -236,7 +236,7 @@ class _Reading:
         self.frames.add(
             name, self._named(relative_to(element), prefix) or frame, pose_of(element, "pose", self.model_field, where)
         )
-        shapes: dict[str, list[Shape]] = {"visual": [], "collision": []}
+        shapes: dict[str, list[UrdfShape]] = {"visual": [], "collision": []}
         for tag, found in shapes.items():
             for part in element.findall(tag):
                 geometry = part.find("geometry")
@@ -254,7 +254,7 @@ class _Reading:
         if attached := element.get("attached_to", "").strip():
             self._attached[name] = self._named(attached, prefix)
 
-    def _shape(self, element: Element, part: Element, folder: str, where: str) -> Shape:
+    def _shape(self, element: Element, part: Element, folder: str, where: str) -> UrdfShape:
         size: list[float] = []
         for key, count in _SIZES.get(element.tag, ()):
             size += numbers(element.findtext(key) or "", count, self.model_field, f"{where}: {key}")
@@ -263,7 +263,7 @@ class _Reading:
             uri, scale = (element.findtext("uri") or "").strip(), (element.findtext("scale") or "").strip()
             file = uri if ADDRESS.match(uri) else posixpath.join(folder, uri)
             kind = "mesh" if element.find("submesh") is None else "submesh"
-        return Shape(
+        return UrdfShape(
             _pose(pose_of(part, "pose", self.model_field, where)), kind, tuple(size), file, scale,
             part.get("name", ""), self._rgba(part),
         )  # fmt: skip

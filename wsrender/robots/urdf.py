@@ -46,7 +46,7 @@ class Inertial:
 
 
 @dataclass(frozen=True)
-class Shape:
+class UrdfShape:
     """A geometry: ``box`` (edges), ``cylinder`` or ``capsule`` (radius, length), ``sphere`` (radius) [m], or ``mesh``.
 
     Of an ``ellipsoid`` the half axes. ``kind`` is the name of its element, whatever that is; ``rgba`` None where no
@@ -68,8 +68,8 @@ class Link:
 
     name: str
     inertial: Inertial | None
-    visuals: tuple[Shape, ...]
-    collisions: tuple[Shape, ...]
+    visuals: tuple[UrdfShape, ...]
+    collisions: tuple[UrdfShape, ...]
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Loop:
+class LoopJoint:
     """A joint beside the tree: it ties two links that are in it already."""
 
     name: str
@@ -129,7 +129,7 @@ class Urdf:
     root: str
     links: dict[str, Link]
     joints: dict[str, Joint]
-    loops: tuple[Loop, ...] = ()
+    loops: tuple[LoopJoint, ...] = ()
 
 
 def read_urdf(robot: Element, field: str) -> Urdf:
@@ -182,7 +182,7 @@ def _link(element: Element, colors: dict[str, tuple[float, ...]], field: str) ->
     name = _name(element, field)
     where = f"link {name!r}"
     inertial = element.find("inertial")
-    shapes: dict[str, list[Shape]] = {"visual": [], "collision": []}
+    shapes: dict[str, list[UrdfShape]] = {"visual": [], "collision": []}
     for tag, found in shapes.items():
         for part in element.findall(tag):
             geometry = part.find("geometry")
@@ -192,7 +192,7 @@ def _link(element: Element, colors: dict[str, tuple[float, ...]], field: str) ->
     return Link(name, stated, tuple(shapes["visual"]), tuple(shapes["collision"]))
 
 
-def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]], field: str, where: str) -> Shape:
+def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]], field: str, where: str) -> UrdfShape:
     keys, size = _SIZES.get(element.tag, ()), []
     for key in keys:
         size += numbers(element.get(key, ""), 3 if element.tag in ("box", "ellipsoid") else 1, field, f"{where}: {key}")
@@ -200,7 +200,7 @@ def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]]
     rgba = None if material is None else _rgba(material, field) or colors.get(material.get("name", ""))
     file = "" if keys else element.get("filename", element.tag)
     name, scale = part.get("name", ""), element.get("scale", "")
-    return Shape(_pose(part, field, where), element.tag, tuple(size), file, scale, name, rgba)
+    return UrdfShape(_pose(part, field, where), element.tag, tuple(size), file, scale, name, rgba)
 
 
 _SIZES = {

@@ -6,7 +6,7 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.robots.compiled_model import Purpose
 from wsrender.robots.mesh_files import ReadMesh, triangles
-from wsrender.robots.urdf import Link, Shape
+from wsrender.robots.urdf import Link, UrdfShape
 from wsrender.robots.xml_source import numbers
 
 FEWEST_VERTICES = 4  # that MuJoCo takes
@@ -58,7 +58,7 @@ def add_shapes(
 def _added(
     spec: mujoco.MjSpec,
     body: mujoco.MjsBody,
-    shape: Shape,
+    shape: UrdfShape,
     where: str,
     purpose: Purpose,
     read_mesh: ReadMesh,
@@ -94,7 +94,7 @@ def _flat(vertices: np.ndarray) -> bool:
     return bool(spread[2] <= 1e-6 * spread[0])
 
 
-def _add_primitive(body: mujoco.MjsBody, shape: Shape) -> mujoco.MjsGeom:
+def _add_primitive(body: mujoco.MjsBody, shape: UrdfShape) -> mujoco.MjsGeom:
     size = np.zeros(3)
     if shape.kind in ("cylinder", "capsule"):
         size[:2] = shape.size[0], shape.size[1] / 2
@@ -103,6 +103,6 @@ def _add_primitive(body: mujoco.MjsBody, shape: Shape) -> mujoco.MjsGeom:
     return _add_geom(body, shape, PRIMITIVES[shape.kind], size=size)
 
 
-def _add_geom(body: mujoco.MjsBody, shape: Shape, kind: mujoco.mjtGeom, **what) -> mujoco.MjsGeom:
+def _add_geom(body: mujoco.MjsBody, shape: UrdfShape, kind: mujoco.mjtGeom, **what) -> mujoco.MjsGeom:
     pose = {"pos": shape.pose.position, "quat": shape.pose.quat_wxyz}
     return body.add_geom(type=kind, contype=0, conaffinity=0, **pose, **what)

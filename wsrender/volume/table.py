@@ -10,7 +10,7 @@ from wsrender.short_repr import short_names
 
 
 @dataclass(frozen=True)
-class Grid:
+class CellGrid:
     """Cells that the rows of a table stand for, those of the last axis first.
 
     ``axes``: the columns of their centres; ``origin``: the lower corner of the first, ``step``: their edges, in the
@@ -34,7 +34,7 @@ class Table:
 
     columns: dict[str, np.ndarray]
     units: dict[str, str] = field(default_factory=dict)
-    grid: Grid | None = None
+    grid: CellGrid | None = None
 
     def __post_init__(self):
         for name, column in self.columns.items():

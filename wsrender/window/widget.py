@@ -21,7 +21,7 @@ def _widget_class() -> Any:
     except ImportError as error:
         raise MissingExtraError("anywidget", "notebook") from error
 
-    class View(anywidget.AnyWidget):
+    class ViewWidget(anywidget.AnyWidget):
         """A view of wsrender. ``close()`` frees it."""
 
         _esm = built("viewer.js").decode()
@@ -36,7 +36,7 @@ def _widget_class() -> Any:
             listed = [{"name": name, "bytes": len(data)} for name, data in blobs.items()]
             self.send({**header, "blobs": listed}, buffers=list(blobs.values()))
 
-    return View
+    return ViewWidget
 
 
 def reply(view: Viewed, answering: Answering, content: Mapping[str, Any]) -> tuple[dict[str, Any], Mapping[str, bytes]]:

@@ -13,7 +13,7 @@ from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
 from wsrender.robots.triangles import closest_points, winding_numbers
 from wsrender.world.meshes import hull_vertices
-from wsrender.world.surfaces import Surface
+from wsrender.world.surfaces import ClosedSurface
 
 FAR = 1e3  # [m] beyond which MuJoCo need not look
 POINT = 1e-6  # radius of the ball that stands for a point [m]: MuJoCo has none without
@@ -27,10 +27,10 @@ class NearestShape:
     Raises InputError for a mesh that encloses no volume, its field below ``items``, and for more than MOST_SOLIDS.
     """
 
-    def __init__(self, shapes: Sequence[Shape | Surface]):
+    def __init__(self, shapes: Sequence[Shape | ClosedSurface]):
         if len(shapes) > MOST_SOLIDS:
             raise InputError("items", f"are {len(shapes)} shapes and convex pieces; at most {MOST_SOLIDS} may push")
-        self._surfaces = [_Triangles(shape) for shape in shapes if isinstance(shape, Surface)]
+        self._surfaces = [_Triangles(shape) for shape in shapes if isinstance(shape, ClosedSurface)]
         planes = [shape for shape in shapes if isinstance(shape, HalfSpace)]
         normals = np.array([shape.normal for shape in planes]).reshape(-1, 3)
         self._normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
@@ -72,7 +72,7 @@ class NearestShape:
 class _Triangles:
     """The triangles of a surface, with a ball around each."""
 
-    def __init__(self, surface: Surface):
+    def __init__(self, surface: ClosedSurface):
         vertices = surface.vertices @ surface.T[:3, :3].T + surface.T[:3, 3]
         self.corners = vertices[surface.faces]
         self.centers = self.corners.mean(axis=1)
@@ -90,7 +90,7 @@ class _Triangles:
         return side * float(distances[k]), gradient
 
 
-def _compiled(shapes: Sequence[Shape | Surface]) -> mujoco.MjModel:
+def _compiled(shapes: Sequence[Shape | ClosedSurface]) -> mujoco.MjModel:
     """A model whose first geom is the point, and the others all shapes but half-spaces."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[POINT, 0, 0])
@@ -106,8 +106,8 @@ def _compiled(shapes: Sequence[Shape | Surface]) -> mujoco.MjModel:
         raise InputError("items", f"are refused by MuJoCo: {error}") from error
 
 
-def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
-    if isinstance(shape, HalfSpace | Surface):
+def _add(spec: Any, shape: Shape | ClosedSurface, number: int) -> None:
+    if isinstance(shape, HalfSpace | ClosedSurface):
         return
     assert not isinstance(shape, HeightField)  # whose surface is asked instead
     kind = "mesh" if isinstance(shape, ConvexMesh) else shape.shape

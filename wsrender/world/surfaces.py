@@ -19,7 +19,7 @@ CONVEX = 1e-9  # of the hull's volume, which a convex solid may lack by rounding
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class ClosedSurface:
     """What triangles ``faces`` (F, 3) of ``vertices`` (V, 3) [m] enclose; its own frame stands at ``T`` (4, 4)."""
 
     vertices: np.ndarray
@@ -40,15 +40,15 @@ class Surface:
         )
 
 
-def surface_of(item: Mesh | HeightField) -> Surface:
+def surface_of(item: Mesh | HeightField) -> ClosedSurface:
     """The solid of an item itself.
 
     Raises InputError, naming the field, for what cannot be read, is not closed, encloses no volume or is too large.
     """
     if isinstance(item, HeightField):
-        return Surface(*ground(_heights(item), item.size_m), item.matrix())
+        return ClosedSurface(*ground(_heights(item), item.size_m), item.matrix())
     field, (vertices, faces) = "path" if item.model is None else "model", triangles_of(item)
-    return Surface(*closed(vertices, faces, field), item.matrix())
+    return ClosedSurface(*closed(vertices, faces, field), item.matrix())
 
 
 def closed(vertices: np.ndarray, faces: np.ndarray, field: str) -> Triangles:

@@ -15,9 +15,9 @@ from wsrender.documents.environment import (
     Sphere,
 )
 from wsrender.world.meshes import hull_vertices
-from wsrender.world.surfaces import Surface, surface_of
+from wsrender.world.surfaces import ClosedSurface, surface_of
 
-Solid = Sphere | Box | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh | HeightField | Surface
+Solid = Sphere | Box | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh | HeightField | ClosedSurface
 """A shape that is bounded."""
 
 # Faces of a box whose corners are numbered by the bits x y z, outward.
@@ -39,7 +39,7 @@ def triangles(shape: Solid) -> tuple[np.ndarray, np.ndarray]:
         return _box(np.array(shape.size_m), shape.matrix())
     if isinstance(shape, HeightField):
         shape = surface_of(shape)
-    if isinstance(shape, Surface):
+    if isinstance(shape, ClosedSurface):
         return _placed(shape.vertices, shape.T), shape.faces
     mesh = _mesh(shape)
     return _placed(np.asarray(mesh.vertices), shape.matrix()), np.asarray(mesh.faces)

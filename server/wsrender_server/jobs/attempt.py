@@ -9,7 +9,7 @@ from distributed import Future
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ComputationRecord, Progress
 from wsrender_server.jobs.steps import partial_name
-from wsrender_server.jobs.task import Limits, Step, Task
+from wsrender_server.jobs.task import Step, Task, TaskLimits
 
 MESSAGES = {Step.PLAN: "planning", Step.SHARD: "samples", Step.FINISH: "finishing"}
 
@@ -22,7 +22,7 @@ class Attempt:
     target: str
     resolved: dict[str, Any] | None
     generation: int  # of the scheduler's losses, so that a lost task's name is not used again
-    limits: Limits | None = None
+    limits: TaskLimits | None = None
     futures: dict[tuple[Step, int], Future] = field(default_factory=dict)
     step: Step = Step.PLAN
     done: dict[int, int] = field(default_factory=dict)  # samples done by shard; of a refinement, points decided

@@ -23,7 +23,7 @@ from wsrender_server.jobs.records import ComputationState
 from wsrender_server.jobs.retention import Removal, Retention
 from wsrender_server.jobs.sole_use import check_bound, locked_folder
 from wsrender_server.jobs.store import JobStore
-from wsrender_server.jobs.tables import ArtifactFile, Computation, Model, StoreId, Table
+from wsrender_server.jobs.tables import ArtifactFile, Computation, Model, Row, StoreId
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -32,7 +32,7 @@ AT_A_TIME = 50  # rows: a document may have megabytes
 
 
 @dataclass(frozen=True)
-class Finding:
+class Discrepancy:
     """Something that is not as the database says; ``computation`` is that whose result is lost."""
 
     text: str
@@ -45,7 +45,7 @@ class Checked:
 
     files: int
     bytes: int
-    findings: list[Finding]
+    findings: list[Discrepancy]
     strays: list[Removal]
 
 
@@ -57,9 +57,9 @@ def check(store: JobStore, retention: Retention) -> Checked:
     check_bound(store.transactions, store.files)
     intact = [path.stat().st_size for path in _listed(store) if store.files.is_intact(path)]
     bad = {path: listed for path, listed in _listed(store).items() if not store.files.is_intact(path)}
-    findings = [Finding(fault) for fault in _database_faults(store.transactions.engine)]
+    findings = [Discrepancy(fault) for fault in _database_faults(store.transactions.engine)]
     for path, (name, computation) in bad.items():
-        findings.append(Finding(f"{name} is {'damaged' if path.exists() else 'missing'}: {path}", computation))
+        findings.append(Discrepancy(f"{name} is {'damaged' if path.exists() else 'missing'}: {path}", computation))
     strays = [removal for removal in retention.due() if removal.what in ("files", "model")]
     return Checked(len(intact), sum(intact), findings, strays)
 
@@ -173,7 +173,7 @@ def _copy_tables(source: Engine, target: Engine) -> None:
         source.connect().execution_options(**snapshot, yield_per=AT_A_TIME) as reading,
         target.execution_options(writes=True).begin() as writing,
     ):
-        for table in Table.metadata.sorted_tables:
+        for table in Row.metadata.sorted_tables:
             for rows in reading.execute(select(table)).mappings().partitions():
                 writing.execute(insert(table), [dict(row) for row in rows])
 
@@ -193,13 +193,13 @@ def _settle(store: JobStore) -> None:
 def _has_rows(engine: Engine) -> bool:
     with engine.connect() as connection:
         there = set(inspect(connection).get_table_names())
-        tables = [table for table in Table.metadata.sorted_tables if table.name in there]
+        tables = [table for table in Row.metadata.sorted_tables if table.name in there]
         return any(connection.execute(select(text("1")).select_from(table).limit(1)).first() for table in tables)
 
 
 def _empty_tables(engine: Engine) -> None:
     with engine.execution_options(writes=True).begin() as connection:
-        for table in reversed(Table.metadata.sorted_tables):
+        for table in reversed(Row.metadata.sorted_tables):
             connection.execute(delete(table))
 
 

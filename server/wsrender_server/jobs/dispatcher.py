@@ -17,7 +17,7 @@ from wsrender_server.jobs.engine import Engine, outcome_of
 from wsrender_server.jobs.fair_share import FairShare
 from wsrender_server.jobs.faults import EngineSlow, EngineUnavailable, StoreUnavailable
 from wsrender_server.jobs.records import ArtifactRecord, ComputationState
-from wsrender_server.jobs.task import Limits, Outcome, Step, Verdict, error
+from wsrender_server.jobs.task import Outcome, Step, TaskLimits, Verdict, error
 from wsrender_server.settings import Settings
 
 TICK_S = 0.1
@@ -44,7 +44,7 @@ class Dispatcher:
     def __init__(self, store: ComputationStore, settings: Settings):
         self.store = store
         self.engine = Engine(settings, self._on_message)
-        self._limits = Limits.of(settings)
+        self._limits = TaskLimits.of(settings)
         self._attempts: dict[str, Attempt] = {}
         self._inbox: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._deferred: list[Callable[[], None]] = []

@@ -19,7 +19,7 @@ from wsrender.errors import DocumentError, InputError, WsrenderError
 from wsrender_server.jobs import steps
 from wsrender_server.jobs.child_process import kill, resident_bytes
 from wsrender_server.jobs.files import is_full
-from wsrender_server.jobs.task import Limits, Outcome, Step, Task, Verdict, error
+from wsrender_server.jobs.task import Outcome, Step, Task, TaskLimits, Verdict, error
 from wsrender_server.settings import Settings
 
 LOOK_S = 0.05
@@ -90,7 +90,7 @@ class KernelProcess:
 
     def __init__(self, settings: Settings):
         self._settings = settings
-        self._limits = Limits.of(settings)
+        self._limits = TaskLimits.of(settings)
         self._threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
         self._child: _Child | None = None
         self._spare: _Child | None = None

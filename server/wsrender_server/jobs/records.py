@@ -185,7 +185,7 @@ class DeliveryRecord:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class DeliveryOutcome:
     """What came of an attempt to deliver a message. ``gone``: the receiver wants no more of anything."""
 
     delivered: bool

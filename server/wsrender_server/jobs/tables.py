@@ -52,13 +52,13 @@ class Timestamp(TypeDecorator[datetime]):
         return None if value is None else datetime.fromtimestamp(value / 1e6, UTC)
 
 
-class Table(DeclarativeBase):
+class Row(DeclarativeBase):
     """Base of all tables."""
 
     type_annotation_map = {datetime: Timestamp, dict[str, Any]: JSON(none_as_null=True)}  # noqa: RUF012
 
 
-class Computation(Table):
+class Computation(Row):
     """What is computed, once, for every job of one owner that asks for it."""
 
     __tablename__ = "computations"
@@ -79,7 +79,7 @@ class Computation(Table):
     version: Mapped[str] = mapped_column(String(32), server_default="0.1.0")  # of wsrender, whose numbers it holds
 
 
-class Job(Table):
+class Job(Row):
     """A submission."""
 
     __tablename__ = "jobs"
@@ -109,7 +109,7 @@ class Job(Table):
     computation: Mapped[Computation] = relationship()  # says what is written first, as in the tables below
 
 
-class Label(Table):
+class Label(Row):
     """A label of a job, for filtering."""
 
     __tablename__ = "labels"
@@ -121,7 +121,7 @@ class Label(Table):
     job: Mapped[Job] = relationship()
 
 
-class Event(Table):
+class Event(Row):
     """Something that happened to a job; numbered within the job."""
 
     __tablename__ = "events"
@@ -133,7 +133,7 @@ class Event(Table):
     job: Mapped[Job] = relationship()
 
 
-class ArtifactFile(Table):
+class ArtifactFile(Row):
     """A file of a computation's result; its bytes lie in the data folder under their hash."""
 
     __tablename__ = "artifacts"
@@ -145,7 +145,7 @@ class ArtifactFile(Table):
     record: Mapped[dict[str, Any]]
 
 
-class Model(Table):
+class Model(Row):
     """A robot model that an owner uploaded; its bytes lie in the data folder under their hash."""
 
     __tablename__ = "models"
@@ -156,7 +156,7 @@ class Model(Table):
     created_at: Mapped[datetime]
 
 
-class Key(Table):
+class Key(Row):
     """An API key; of its secret only the SHA-256 is kept."""
 
     __tablename__ = "keys"
@@ -169,7 +169,7 @@ class Key(Table):
     revoked_at: Mapped[datetime | None]
 
 
-class Webhook(Table):
+class Webhook(Row):
     """Where an owner is told of the states of their jobs. Its secret signs what is sent, and so is kept as it is."""
 
     __tablename__ = "webhooks"
@@ -188,7 +188,7 @@ class Webhook(Table):
     last_error: Mapped[str | None] = mapped_column(Text)
 
 
-class Delivery(Table):
+class Delivery(Row):
     """A message that a webhook is to get; gone once it has it, or was given up.
 
     No foreign key: a job changes its state whether or not a webhook is deleted at that moment.
@@ -204,7 +204,7 @@ class Delivery(Table):
     next_at: Mapped[datetime] = mapped_column(index=True)
 
 
-class StoreId(Table):
+class StoreId(Row):
     """One row: the identity that this database shares with its data folder."""
 
     __tablename__ = "store_id"
@@ -212,7 +212,7 @@ class StoreId(Table):
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
 
 
-class DeviceTarget(Table):
+class DeviceTarget(Row):
     """The target that a request for a device means on this server's workers, as last seen."""
 
     __tablename__ = "device_targets"

@@ -17,7 +17,7 @@ class Step(StrEnum):
 
 
 @dataclass(frozen=True)
-class Limits:
+class TaskLimits:
     """What a task may take: of a server's settings, or of a worker's."""
 
     memory_bytes: int
@@ -31,9 +31,9 @@ class Limits:
         planning = settings.max_planning_memory_bytes, settings.max_planning_s
         return cls(settings.max_memory_bytes, *planning, settings.max_samples)
 
-    def within(self, other: "Limits | None") -> "Limits":
+    def within(self, other: "TaskLimits | None") -> "TaskLimits":
         """The smaller of each."""
-        return self if other is None else Limits(*map(min, astuple(self), astuple(other)))
+        return self if other is None else TaskLimits(*map(min, astuple(self), astuple(other)))
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Task:
     resolved: dict[str, Any] | None = None
     shard: int = 0
     seconds: dict[str, float] | None = None
-    limits: Limits | None = None
+    limits: TaskLimits | None = None
 
 
 class Verdict(StrEnum):

@@ -12,7 +12,7 @@ from sqlalchemy.exc import DBAPIError
 from wsrender import __version__
 from wsrender.errors import InputError
 from wsrender_server.jobs.faults import StoreUnavailable
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 
 BACKUP = "restore a backup of this version"
 
@@ -49,7 +49,7 @@ def _check_known(connection: Connection, found: tuple[str, ...], known: set[str]
         newest = max(known)
         text = f"is of a newer version of wsrender: its tables are {found[0]}, those of {__version__} {newest}"
         raise InputError("database", f"{text}; install the version that it was last used with, or {BACKUP}")
-    tables = sorted(set(Table.metadata.tables) & set(inspect(connection).get_table_names()))
+    tables = sorted(set(Row.metadata.tables) & set(inspect(connection).get_table_names()))
     if not found and tables:
         text = f"has tables ({', '.join(tables)}) and says of no version: the table alembic_version is missing or empty"
         raise InputError("database", f"{text}; name an empty database, or {BACKUP}")

@@ -2,7 +2,7 @@
 
 from alembic import context
 
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 
-context.configure(connection=context.config.attributes["connection"], target_metadata=Table.metadata)
+context.configure(connection=context.config.attributes["connection"], target_metadata=Row.metadata)
 context.run_migrations()

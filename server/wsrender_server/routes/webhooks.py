@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.jobs.records import ENDED, JobState
-from wsrender_server.jobs.webhooks.targets import LONGEST_URL, Targets
+from wsrender_server.jobs.webhooks.targets import LONGEST_URL, AllowedTargets
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.query import Identifier
@@ -101,7 +101,7 @@ def create_webhook(server: Server, principal: Submitter, response: Response, web
     A message comes at least once, and each time with the same webhook-id; its type is job. and the state, and its
     timestamp tells the order. Answers other than 2xx are tried again later; redirects are not followed; 410 ends it.
     """
-    Targets(server.settings.webhook_targets, server.settings.webhook_networks).check(webhook.url)
+    AllowedTargets(server.settings.webhook_targets, server.settings.webhook_networks).check(webhook.url)
     made, secret = server.store.create_webhook(principal.owner, webhook.url, webhook.states)
     response.headers["Cache-Control"] = "no-store"
     return NewWebhook.of(made, secret=secret)

@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.analyses.base_placement.test_base_placement import RING, job
 from wsrender.analyses.base_placement import run
-from wsrender.analyses.base_placement.refined import CELLS, Refined, _within, looked_at, refined
+from wsrender.analyses.base_placement.refined import CELLS, RefinedPlacement, _within, looked_at, refined
 from wsrender.analyses.base_placement.result import least_value
 from wsrender.analyses.base_placement.run import BasePlacementAnalysis
 from wsrender.analyses.jobs import parse_job
@@ -128,7 +128,7 @@ def test_of_two_looks_at_a_placement_the_better_posture_of_each_target_stays():
     )
     label = np.array([REACHABLE, REACHABLE, REACHABLE, UNDECIDED, REACHABLE, UNDECIDED], np.int8)
     others = Decided(label, np.full(6, 2, np.int8), np.array([1.5, 1, 0.5, np.nan, 4, np.nan]), np.ones(6, bool))
-    first = Refined(np.arange(6.0), own, np.zeros((6, 2)), 0.25)
+    first = RefinedPlacement(np.arange(6.0), own, np.zeros((6, 2)), 0.25)
     found = first.with_better(others, np.ones((6, 2)))
     assert found.found.label.tolist() == [REACHABLE] * 5 + [UNDECIDED]
     np.testing.assert_array_equal(found.found.value, [1.5, 2, 0.5, 3, 4, np.nan])

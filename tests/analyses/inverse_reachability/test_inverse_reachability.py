@@ -14,7 +14,7 @@ from tests.run.journeys import from_the_command_line
 from wsrender.analyses.inverse_reachability.pictures import base_positions
 from wsrender.documents.placements import COORDINATES, placed
 from wsrender.run import execute, plan
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 TARGET = {"position_m": [0.1, 0.05, 0.3], "rpy_deg": [170, 10, 20]}
 PART = {"position_m": [0.4, 0.1, 0.02], "rpy_deg": [0, 10, 30]}
@@ -122,7 +122,7 @@ def test_pictures_mark_the_best_base_and_what_is_not_decided():
     line = execute(JOB | {"over": {"x_m": [-0.8, 1.6, 0.2]}})
     (mark,) = [each for each in line.plot.base_map().axes[0].lines if each.get_label() == "best base"]
     assert set(mark.get_xdata()) == {line.document["best"]["x_m"]}
-    shape = Grid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2))
+    shape = CellGrid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2))
     columns = {"x_m": np.repeat([0.5, 1.5], 2), "y_m": np.tile([0.5, 1.5], 2)}
     columns |= {
         "reachable": np.array([0, 0, 1, 2]),

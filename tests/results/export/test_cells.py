@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from wsrender.results.export.vtkhdf import write_cells_vtkhdf
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 GRIDS = {
     "plan": (("x_m", "y_m"), (-1.0, 0.5), (0.1, 0.25), (4, 3)),
@@ -26,7 +26,7 @@ def test_cells_stand_where_the_table_has_them(name, tmp_path):
     served, wide = np.arange(numbers.shape[1]), np.arange(2 * numbers.shape[1]).reshape(-1, 2) / 7
     columns = dict(zip(axes, centers, strict=True)) | {"served": served, "wide": wide, "name": served.astype(str)}
     path = tmp_path / "map.vtkhdf"
-    write_cells_vtkhdf(Table(columns, {"served": "m", "x_m": "m"}, Grid(axes, origin, step, shape)), path)
+    write_cells_vtkhdf(Table(columns, {"served": "m", "x_m": "m"}, CellGrid(axes, origin, step, shape)), path)
     grid = pyvista.read(path)
     assert grid.n_cells == len(served) and set(grid.cell_data.keys()) == {"served", "wide"}
     found = grid.cell_centers().points
@@ -41,7 +41,7 @@ def test_cells_stand_where_the_table_has_them(name, tmp_path):
 
 
 def test_equal_maps_are_equal_files(tmp_path):
-    table = Table({"x_m": np.arange(3.0), "served": np.arange(3)}, {}, Grid(("x_m",), (0.0,), (1.0,), (3,)))
+    table = Table({"x_m": np.arange(3.0), "served": np.arange(3)}, {}, CellGrid(("x_m",), (0.0,), (1.0,), (3,)))
     for name in "ab":
         write_cells_vtkhdf(table, tmp_path / name)
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()

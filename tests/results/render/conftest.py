@@ -4,7 +4,7 @@ import pytest
 from wsrender.errors import MissingExtraError, RenderError
 from wsrender.results.render import Subject
 from wsrender.results.render.process import drawn
-from wsrender.results.render.scene import Camera, Scene
+from wsrender.results.render.scene import Camera, DrawnScene
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
@@ -14,7 +14,7 @@ def opengl():
     """Skips where nothing can draw, and says why."""
     camera = Camera(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 1.0)
     try:
-        drawn(Scene(camera, (8, 8)))
+        drawn(DrawnScene(camera, (8, 8)))
     except (MissingExtraError, RenderError) as error:
         pytest.skip(str(error))
 

@@ -17,7 +17,7 @@ from wsrender.results.drawing.box import space_around
 from wsrender.results.render import VIEWS, Box, Floor, Subject, composition, picture
 from wsrender.results.render.environment import surfaces
 from wsrender.results.render.process import drawn
-from wsrender.results.render.scene import DrawnSurface, Plates, Points, Rods, Scene
+from wsrender.results.render.scene import Dots, DrawnScene, DrawnSurface, Plates, Rods
 from wsrender.results.render.views import Choice
 from wsrender.volume.volume_data import VolumeData
 
@@ -55,7 +55,7 @@ def bounds_of(layers):
 
 def render(layers, camera=None):
     camera = camera or space_around(bounds_of(layers), SIZE, -58, 24).camera
-    return drawn(Scene(camera, SIZE, layers)), camera
+    return drawn(DrawnScene(camera, SIZE, layers)), camera
 
 
 @pytest.mark.usefixtures("opengl")
@@ -63,7 +63,7 @@ def test_things_appear_where_the_camera_says():
     space = space_around(np.array([[-1, -1, -1], [1, 1, 1]]), SIZE, -58, 24)
     points = np.array([[0.5, -0.7, 0.2], [-0.8, 0.1, 0.9]])
     colors = np.array([[200, 0, 0], [0, 0, 200]], np.uint8)
-    image, _ = render([Points(points, colors, 6)], space.camera)
+    image, _ = render([Dots(points, colors, 6)], space.camera)
     for place, channel in zip(seen(space.camera, points), (0, 2), strict=True):
         ink = np.delete(255 - image.astype(float), channel, axis=2).sum(axis=2) * (image[:, :, channel] > 150)
         rows, columns = np.indices(ink.shape) + 0.5

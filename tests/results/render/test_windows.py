@@ -8,9 +8,9 @@ import pytest
 
 from wsrender.errors import MissingExtraError, RenderError
 from wsrender.results.render import process
-from wsrender.results.render.scene import Camera, Scene
+from wsrender.results.render.scene import Camera, DrawnScene
 
-SCENE = Scene(Camera(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 1.0), (8, 8))
+SCENE = DrawnScene(Camera(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 1.0), (8, 8))
 
 
 @pytest.fixture(autouse=True)

@@ -4,7 +4,7 @@ import numpy as np
 
 from wsrender.results.view.blobs import Blobs
 from wsrender.results.view.parts import add_maps, add_points
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 
 def names(entries):
@@ -31,5 +31,5 @@ def test_what_was_asked_for_leads_and_names_are_no_colours():
 def test_maps_show_what_is_served_before_how_the_base_is_turned():
     x, y = (each.ravel() for each in np.meshgrid(np.arange(2.0), np.arange(2.0), indexing="ij"))
     columns = {"x_m": x, "y_m": y, "yaw_deg": np.zeros(4), "served": np.arange(4), "weight": np.arange(4.0)}
-    placements = Table(columns, grid=Grid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2)))
+    placements = Table(columns, grid=CellGrid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2)))
     assert names(add_maps(Blobs(), {"map": placements}, None, "float16")) == [["weight", "served", "yaw_deg"]]

@@ -13,7 +13,7 @@ from tests.golden.files import job_of
 from tests.results.export.sample_data import random_map, random_volume
 from tests.server.http.idle_server import problem_of
 from wsrender.results.result import Result
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 
 @pytest.fixture
@@ -315,7 +315,7 @@ def test_formats_that_volumes_do_not_have(client, kept):
 
 def test_cells_of_a_map_are_no_volume(client, jobs, tmp_path, submit):
     """They are VTK files too, of other axes."""
-    grid = Grid(("x", "y"), (0.0, 0.0), (1.0, 1.0), (2, 2))
+    grid = CellGrid(("x", "y"), (0.0, 0.0), (1.0, 1.0), (2, 2))
     cells = Table({"x": np.zeros(4), "y": np.zeros(4), "value": np.arange(4.0)}, {}, grid)
     Result({"analysis": "workspace", "warnings": []}, tables={"places": cells}).save(tmp_path / "out")
     job = submit()["id"]

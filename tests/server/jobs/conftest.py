@@ -7,7 +7,7 @@ from sqlalchemy import text
 from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.store import JobStore, open_store
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 from wsrender_server.migrations import upgrade
 
 from tests.server.jobs.documents import canonical
@@ -20,7 +20,7 @@ def database(request, tmp_path):
         engine = open_database(f"sqlite:///{tmp_path / 'jobs.db'}")
     else:
         engine = open_database(request.getfixturevalue("postgres_url"))
-        Table.metadata.drop_all(engine)
+        Row.metadata.drop_all(engine)
         with engine.begin() as connection:
             connection.execute(text("DROP TABLE IF EXISTS alembic_version"))
     upgrade(engine)

@@ -8,7 +8,7 @@ from wsrender_server.jobs.dispatcher import Dispatcher
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ComputationRecord, ComputationState
 from wsrender_server.jobs.steps import partial_name
-from wsrender_server.jobs.task import Limits, Step
+from wsrender_server.jobs.task import Step, TaskLimits
 from wsrender_server.settings import Settings
 
 SHARDS = [[0, 10], [10, 10], [20, 10], [30, 0], [30, 0]]  # the last two are refinements
@@ -77,4 +77,4 @@ def test_tasks_carry_the_limits_of_the_server(opened, tmp_path, document):
     (computation,) = store.unfinished()
     with suppress(ValueError):  # no future of it
         dispatcher._launch(computation)
-    assert [task.limits for task in sent] == [Limits(2**29, 2**28, 7.0, 99)]
+    assert [task.limits for task in sent] == [TaskLimits(2**29, 2**28, 7.0, 99)]

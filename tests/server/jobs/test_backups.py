@@ -10,7 +10,7 @@ from wsrender_server.jobs import backups, documents
 from wsrender_server.jobs.records import JobState
 from wsrender_server.jobs.retention import Retention
 from wsrender_server.jobs.store import open_store
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.test_kept_files import DAMAGES
@@ -65,8 +65,7 @@ def contents(store):
     """All rows of all tables, and all files that are kept."""
     with store.transactions.read() as session:
         rows = {
-            table.name: sorted(map(repr, session.execute(table.select()).all()))
-            for table in Table.metadata.sorted_tables
+            table.name: sorted(map(repr, session.execute(table.select()).all())) for table in Row.metadata.sorted_tables
         }
     folders = [store.files.root / kind for kind in ("results", "models", "documents")]
     paths = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
@@ -113,7 +112,7 @@ def test_a_restored_store_holds_what_was_backed_up(store, filled, tmp_path, post
         assert again.submit("ann", document_of(1)).cached
         assert again.retry("ann", filled["failed"]).state == JobState.QUEUED
     if store.transactions.engine.dialect.name == "postgresql":
-        Table.metadata.drop_all(store.transactions.engine)
+        Row.metadata.drop_all(store.transactions.engine)
         with store.transactions.write() as session:
             session.execute(text("DROP TABLE alembic_version"))
         with closing(restored(tmp_path / "backup", tmp_path / "third", postgres_url)) as third, third.claimed():

@@ -9,7 +9,7 @@ from distributed import Security
 from sqlalchemy import text
 from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.service import JobService
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -30,7 +30,7 @@ def expected(tmp_path_factory):
 @pytest.fixture
 def settings(tmp_path, postgres_url):
     engine = open_database(postgres_url)
-    Table.metadata.drop_all(engine)
+    Row.metadata.drop_all(engine)
     with engine.begin() as connection:
         connection.execute(text("DROP TABLE IF EXISTS alembic_version"))
     upgrade(engine)

@@ -16,7 +16,7 @@ from wsrender_server.jobs import kernel_process, steps
 from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.kernel_process import KernelProcess
-from wsrender_server.jobs.task import Limits, Outcome, Step, Task, Verdict
+from wsrender_server.jobs.task import Outcome, Step, Task, TaskLimits, Verdict
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.documents import canonical
@@ -180,7 +180,7 @@ def loaded(names):
     return [name in sys.modules for name in names]
 
 
-ENOUGH = Limits(2**33, 2**33, 600.0, 10**11)
+ENOUGH = TaskLimits(2**33, 2**33, 600.0, 10**11)
 HELD = 3 * 2**28  # bytes
 
 
@@ -223,7 +223,7 @@ def held_to():
         process = KernelProcess(Settings(data_dir=Path(folder), **large))
 
         def with_settings(settings):
-            process._limits = Limits.of(Settings(data_dir=Path(folder), **large | settings))
+            process._limits = TaskLimits.of(Settings(data_dir=Path(folder), **large | settings))
             return process
 
         yield with_settings

@@ -18,7 +18,7 @@ from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.files import FOLDERS
 from wsrender_server.jobs.retention import Retention
 from wsrender_server.jobs.store import open_store
-from wsrender_server.jobs.tables import Table
+from wsrender_server.jobs.tables import Row
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -28,7 +28,7 @@ from wsrender.errors import InputError
 def test_migrated_tables_equal_the_declared_ones(database):
     with database.connect() as connection:
         context = MigrationContext.configure(connection, opts={"compare_type": True})
-        assert compare_metadata(context, Table.metadata) == []
+        assert compare_metadata(context, Row.metadata) == []
 
 
 def test_computations_of_the_first_version_are_its_own(tmp_path):
@@ -79,7 +79,7 @@ def test_a_store_of_the_version_before_is_taken_over_whole(tmp_path, request, ki
     else:
         settings = Settings(data_dir=data, database=request.getfixturevalue("postgres_url"))
         engine = open_database(settings.database_url)
-        Table.metadata.drop_all(engine)
+        Row.metadata.drop_all(engine)
     config = Config()
     config.set_main_option("script_location", str(Path(wsrender_server.migrations.__file__).parent))
     with engine.execution_options(writes=True).begin() as connection:

@@ -18,13 +18,13 @@ from sqlalchemy import select, update
 from standardwebhooks import Webhook as Verifier
 from standardwebhooks import WebhookVerificationError
 from wsrender_server.jobs.faults import InvalidTransition, QuotaExceeded
-from wsrender_server.jobs.records import DeliveryRecord, JobState, Outcome
+from wsrender_server.jobs.records import DeliveryOutcome, DeliveryRecord, JobState
 from wsrender_server.jobs.tables import Delivery
 from wsrender_server.jobs.webhooks import store as webhook_store
 from wsrender_server.jobs.webhooks.deliveries import AT_ONCE, LONGEST_WAIT_S, Deliveries, _next
 from wsrender_server.jobs.webhooks.sender import LONGEST_SAID, Sender
 from wsrender_server.jobs.webhooks.signature import new_secret
-from wsrender_server.jobs.webhooks.targets import Targets
+from wsrender_server.jobs.webhooks.targets import AllowedTargets
 from wsrender_server.settings import Settings
 
 from tests.server.http.idle_server import IdleJobs
@@ -82,7 +82,7 @@ def resolved(monkeypatch):
 def test_only_origins_of_the_settings_are_asked(url, allowed):
     origins = "https://hooks.example.org,https://*.lab.org:8443,http://receiver:9000,http://[2001:4860:4860::8888]"
     settings = Settings(webhook_targets=origins)
-    targets = Targets(settings.webhook_targets, settings.webhook_networks)
+    targets = AllowedTargets(settings.webhook_targets, settings.webhook_networks)
     if allowed:
         targets.check(url)
         return
@@ -106,14 +106,14 @@ def test_only_origins_of_the_settings_are_asked(url, allowed):
 )  # fmt: skip
 def test_what_is_no_address_is_refused(url, said):
     with pytest.raises(InputError, match=said) as refused:
-        Targets(("https://*", "http://*"), ()).check(url)
+        AllowedTargets(("https://*", "http://*"), ()).check(url)
     assert refused.value.field == "url"
 
 
 def test_by_default_nothing_is_asked():
     settings = Settings()
     with pytest.raises(InputError, match="nothing: this server sends no webhooks"):
-        Targets(settings.webhook_targets, settings.webhook_networks).check("https://a.org")
+        AllowedTargets(settings.webhook_targets, settings.webhook_networks).check("https://a.org")
 
 
 @pytest.mark.parametrize("target", ["*", "https://", "a.org", "ftp://a.org", "https://a.org/path", "https://a*.org"])
@@ -134,7 +134,7 @@ NOT_PUBLIC = [
 def test_no_address_that_is_not_public_is_asked(address, resolved):
     host = f"[{address}]" if ":" in address else address
     with pytest.raises(InputError, match="not public"):
-        Targets(("https://*",), ()).check(f"https://{host}/")
+        AllowedTargets(("https://*",), ()).check(f"https://{host}/")
     for found in ([address], ["93.184.216.34", address], [address, "93.184.216.34"]):
         resolved["inside.example.org"] = [found]
         outcome = sent(Settings(webhook_targets="https://*"), message("https://inside.example.org/"))
@@ -151,7 +151,7 @@ def test_other_ways_to_write_this_machine_are_no_way_in(host):
 
 
 def test_networks_of_the_settings_are_asked():
-    targets = Targets(("https://*",), (ip_network("10.0.0.0/8"), ip_network("fd00::/8")))
+    targets = AllowedTargets(("https://*",), (ip_network("10.0.0.0/8"), ip_network("fd00::/8")))
     for address in ("10.1.2.3", "[fd12::1]", "[::ffff:10.1.2.3]", "93.184.216.34", "[2606:2800:220:1::1]"):
         targets.check(f"https://{address}/")
     with pytest.raises(InputError, match="not public"):
@@ -308,19 +308,19 @@ def test_what_fails_waits_and_is_given_up_after_a_time(store):
     webhook, _ = store.create_webhook("ann", "https://a.org", ["failed"])
     store.test_webhook("ann", webhook.id)
     (one,) = due(store)
-    settle(store, {one: Outcome(False, "the receiver answered 500")}, wait_s=60)
+    settle(store, {one: DeliveryOutcome(False, "the receiver answered 500")}, wait_s=60)
     assert not due(store) and due(store, 61)[0].attempts == 1
     record = store.webhook("ann", webhook.id)
     assert (record.waiting, record.delivered, record.given_up) == (1, 0, 0)
     assert record.last_error == "the receiver answered 500" and record.last_error_at
     (one,) = due(store, 61)
-    settle(store, {one: Outcome(False, "the receiver answered 503")}, give_up_s=0)
+    settle(store, {one: DeliveryOutcome(False, "the receiver answered 503")}, give_up_s=0)
     record = store.webhook("ann", webhook.id)
     assert (record.waiting, record.delivered, record.given_up) == (0, 0, 1) and not due(store, 1e6)
     message_id = store.test_webhook("ann", webhook.id)
     (one,) = due(store)
     assert one.id == message_id
-    settle(store, {one: Outcome(True, "the receiver answered 204")})
+    settle(store, {one: DeliveryOutcome(True, "the receiver answered 204")})
     record = store.webhook("ann", webhook.id)
     assert (record.waiting, record.delivered, record.given_up) == (0, 1, 1) and record.last_delivered_at
     assert store.deliveries == {"failed": 2, "given_up": 1, "delivered": 1}
@@ -331,7 +331,7 @@ def test_a_receiver_that_is_gone_gets_nothing_any_more(store, document):
     for _ in range(3):
         store.test_webhook("ann", webhook.id)
     one = due(store)[0]
-    settle(store, {one: Outcome(False, "the receiver answered 410", gone=True)})
+    settle(store, {one: DeliveryOutcome(False, "the receiver answered 410", gone=True)})
     assert store.webhook("ann", webhook.id).disabled_at and not due(store)
     store.submit("ann", document)
     store.prune_deliveries()
@@ -345,7 +345,7 @@ def test_deliveries_of_a_deleted_webhook_are_settled_as_nothing(store):
     store.test_webhook("ann", webhook.id)
     (one,) = due(store)
     store.delete_webhook("ann", webhook.id)
-    settle(store, {one: Outcome(False, "the receiver answered 500")})
+    settle(store, {one: DeliveryOutcome(False, "the receiver answered 500")})
     assert not due(store, 1e6) and store.waiting_deliveries() == 0
 
 

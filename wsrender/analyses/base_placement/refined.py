@@ -29,7 +29,7 @@ LONGER, SHORTER, LEAST, MOST = 1.5, 0.7, 1e-3, 1.0  # how steps change, and thei
 
 
 @dataclass(frozen=True, eq=False)
-class Refined:
+class RefinedPlacement:
     """A placement (6,) [m and °], what is known of K targets there, and their configurations (K, n) [rad or m]."""
 
     place: np.ndarray
@@ -42,22 +42,22 @@ class Refined:
         weight, score = _ranks(weights, Decided(*(each[None] for each in self.found.arrays)))
         return float(weight[0]), float(score[0])
 
-    def with_better(self, found: Decided, q: np.ndarray) -> "Refined":
+    def with_better(self, found: Decided, q: np.ndarray) -> "RefinedPlacement":
         """With what others (K,), at the same placement, serve that this does not, or by a better value."""
         better = (found.label == REACHABLE) & ~(found.value <= self.found.value)
         arrays = zip(found.arrays, self.found.arrays, strict=True)
         joined = Decided(*(np.where(better, theirs, own) for theirs, own in arrays))
-        return Refined(self.place, joined, np.where(better[:, None], q, self.q), self.step)
+        return RefinedPlacement(self.place, joined, np.where(better[:, None], q, self.q), self.step)
 
 
-def looked_at(search: PlacementsOfKinds, place: np.ndarray) -> Refined:
+def looked_at(search: PlacementsOfKinds, place: np.ndarray) -> RefinedPlacement:
     """What is known at a placement (6,) without continuing from another."""
-    return Refined(place, *search.configurations(place[None] * IN_DEGREES, placed(place[None])))
+    return RefinedPlacement(place, *search.configurations(place[None] * IN_DEGREES, placed(place[None])))
 
 
 def refined(
     job: BasePlacementJob, weights: np.ndarray, search: PlacementsOfKinds, chain: Kinematics, cells: np.ndarray
-) -> Refined:
+) -> RefinedPlacement:
     """A placement in the ranges that serves no less than the first of ``cells`` (B, 6) [m, °], by no worse a score.
 
     ``weights`` (K,): what targets count; ``chain``: whose configurations are continued.
@@ -69,7 +69,7 @@ def refined(
 
 def _continued(
     job: BasePlacementJob, weights: np.ndarray, search: PlacementsOfKinds, chain: Kinematics, cells: np.ndarray
-) -> Refined:
+) -> RefinedPlacement:
     """An evolution strategy from each cell, the best of which go on."""
     random = np.random.Generator(np.random.Philox(key=job.seed))
     size = np.array([job.over.ranges[name][2] if name in job.over.ranges else 0.0 for name in COORDINATES])
@@ -91,9 +91,9 @@ def _continued(
                 best = np.lexsort((score, weight))[-1]
                 if (float(weight[best]), float(score[best])) > each.rank(weights):
                     part = Decided(*(array[best] for array in found.arrays))
-                    each = Refined(around[best], part, q[best], min(MOST, LONGER * each.step))
+                    each = RefinedPlacement(around[best], part, q[best], min(MOST, LONGER * each.step))
                 else:
-                    each = Refined(each.place, each.found, each.q, max(LEAST, SHORTER * each.step))
+                    each = RefinedPlacement(each.place, each.found, each.q, max(LEAST, SHORTER * each.step))
             again = looked_at(search, each.place)
             going[k] = again.with_better(each.found, each.q)
     return max(going, key=lambda each: each.rank(weights))

@@ -22,7 +22,7 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline, tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.reach import Event
+from wsrender.reach import Inside
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_of_job, samples_entry
 from wsrender.robot.rejections import check_admitted
@@ -156,7 +156,7 @@ class CollaborativeVolumeAnalysis(Analysis):
         """The entry of the true volume."""
         chains, tolerance = [robot.chain for robot in self.robots], self.job.refined_volume
         assert tolerance is not None
-        events = {"true": Event(2, 2)}
+        events = {"true": Inside(2, 2)}
         options = self.device, progress, execution.threads, self.constraints, self.apart
         return refined_together(chains, events, tolerance, *options)["true"]
 

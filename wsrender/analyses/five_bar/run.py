@@ -27,7 +27,7 @@ from wsrender.mechanisms.five_bar.isotropy import (
     plane_bounds,
     plane_lattice,
 )
-from wsrender.mechanisms.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
+from wsrender.mechanisms.five_bar.loci import LocusPiece, end_point, pieces, postures, type_2_curves
 from wsrender.mechanisms.five_bar.mechanism import wrapped
 from wsrender.mechanisms.five_bar.region import ArcRegion, workspace
 from wsrender.mechanisms.five_bar.tables import (
@@ -209,7 +209,7 @@ def _name(job: FiveBarJob) -> str:
     return f"five_bar ({', '.join([f'{job.base_m:g}', *pairs])})"
 
 
-def _of_mode(found: Sequence[Piece], mode: str) -> list[Piece]:
+def _of_mode(found: Sequence[LocusPiece], mode: str) -> list[LocusPiece]:
     return [piece for piece in found if piece.working_mode == mode]
 
 

@@ -16,7 +16,7 @@ from wsrender.errors import InputError
 from wsrender.results.drawing.okabe_ito import BLUE, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import GREY, INK, Heading, paper_style, three_digits
-from wsrender.results.drawing.view import BAR, View, inches, new_view
+from wsrender.results.drawing.view import BAR, DrawnAxes, inches, new_view
 from wsrender.volume.table import Table
 
 VELOCITY, FORCE, RENDERED = BLUE, VERMILION, "#c8102e"
@@ -60,7 +60,7 @@ def limits_and_ellipsoids(
     return figure
 
 
-def _draw_arm(view: View, points: np.ndarray, nearness: np.ndarray) -> None:
+def _draw_arm(view: DrawnAxes, points: np.ndarray, nearness: np.ndarray) -> None:
     """Links in the colours of their joints, (L+2, 3) [m]."""
     colors = _colors()
     view.add_line(points, color=INK, lw=8.0, solid_capstyle="round", zorder=3)  # outline
@@ -71,7 +71,7 @@ def _draw_arm(view: View, points: np.ndarray, nearness: np.ndarray) -> None:
     view.add_marks(points[:1], marker="s", ms=9, mfc=INK, mec="white", zorder=5)
 
 
-def _draw_ellipsoid(view: View, surface: np.ndarray, color: str) -> None:
+def _draw_ellipsoid(view: DrawnAxes, surface: np.ndarray, color: str) -> None:
     """A translucent ellipsoid of points (u, v, 3), with the lines of its near side."""
     seen = view.space.camera.to_picture(surface.reshape(-1, 3))
     flat = np.linalg.matrix_rank(seen - seen[0], tol=1e-6) < 2  # seen along a plane that it lies in

@@ -18,7 +18,7 @@ from wsrender.mechanisms.flat import Flat
 from wsrender.mechanisms.membership import count_at, in_base_frame, poses_labelled
 from wsrender.mechanisms.orientations import OrientationSet, finer, orientation_set
 from wsrender.mechanisms.serial_search import MOST_NUMERIC
-from wsrender.reach import Event, estimate_volumes
+from wsrender.reach import Inside, estimate_volumes
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.volume_estimate import VolumeEstimates
 from wsrender.volume.lattice import LatticeBlock, block_around
@@ -64,7 +64,7 @@ def refined_entry(
         labels = labelled(points if flat is None else flat.in_world(points))
         return labels, np.full(labels.shape, np.inf)  # how far points outside are: cells are judged by labels alone
 
-    events = {"all": Event(len(sets), len(sets)), "any": Event(1, len(sets), precise=False)}
+    events = {"all": Inside(len(sets), len(sets)), "any": Inside(1, len(sets), precise=False)}
     found = estimate_volumes(
         membership,
         _strata(plan, occupied, cells, threads),

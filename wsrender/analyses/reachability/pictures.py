@@ -13,7 +13,7 @@ from wsrender.results.drawing.okabe_ito import VERDICTS
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import arm_handles, draw_arm
 from wsrender.results.drawing.style import GREY, Heading, paper_style
-from wsrender.results.drawing.view import View, new_view
+from wsrender.results.drawing.view import DrawnAxes, new_view
 from wsrender.volume.table import Table
 
 # With a mark of its own each: told apart in grey too.
@@ -63,7 +63,7 @@ def labelled_targets(
     return figure
 
 
-def _draw_axes(view: View, position: np.ndarray, quat_wxyz: np.ndarray) -> None:
+def _draw_axes(view: DrawnAxes, position: np.ndarray, quat_wxyz: np.ndarray) -> None:
     """The z axis of the tip at each target."""
     w, x, y, z = (quat_wxyz / np.linalg.norm(quat_wxyz, axis=1, keepdims=True)).T
     direction = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=1)

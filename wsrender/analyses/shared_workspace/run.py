@@ -33,7 +33,7 @@ from wsrender.documents.several_robots import PlacementScan
 from wsrender.errors import InputError
 from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
-from wsrender.reach import Event
+from wsrender.reach import Inside
 from wsrender.robot import Robot
 from wsrender.volume.lattice import block_of_all
 from wsrender.volume.measure import TABLE_UNITS
@@ -148,7 +148,7 @@ class SharedWorkspaceAnalysis(Composed):
         chains = [robot.chain.held(arm.sampling.locked) for robot, arm in zip(robots, self.job.robots, strict=True)]
         tolerance, device = self.job.refined_volume, self.several.plans[0].device
         assert tolerance is not None
-        events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
+        events = {"any": Inside(1, len(chains)), "shared": Inside(2, len(chains))}
         constraints = [plan.pipeline.constraints for plan in plans]
         options = device, progress, execution.threads, constraints, self._apart(robots, number)
         return refined_together(chains, events, tolerance, *options)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import Refined
+from wsrender.analyses.refined import RefinedRobot
 from wsrender.engine import Partial
 from wsrender.pipeline.pipeline import Pipeline
 
@@ -22,7 +22,7 @@ class WorkspacePartial:
     sweep: Partial
     pipeline: Pipeline
     convergence: list[dict[str, Any]] | None = None
-    refined: Refined | None = None
+    refined: RefinedRobot | None = None
 
     def packed(self) -> PartialResult:
         """Arrays of the sweep and, as facts, the rest; labels of voxels are found after the last merge, and stay."""

@@ -26,7 +26,7 @@ from wsrender.analyses.cost import (
 from wsrender.analyses.estimate import held, kept_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import Refined, divided, labelled, refined
+from wsrender.analyses.refined import RefinedRobot, divided, labelled, refined
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
 from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
@@ -305,14 +305,14 @@ class WorkspaceAnalysis(Analysis):
 
     def with_refinements(self, partial: WorkspacePartial, refinements: list[Any]) -> WorkspacePartial:
         """With the refined volume, area or length."""
-        return replace(partial, refined=Refined(refinements[0], None))
+        return replace(partial, refined=RefinedRobot(refinements[0], None))
 
     def refine(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> WorkspacePartial:
         """With the labels of the voxels, if asked."""
         if not self.job.voxel_labels:
             return partial
         measure = partial.refined and partial.refined.measure
-        return replace(partial, refined=Refined(measure, self._labelled(partial, progress, execution)))
+        return replace(partial, refined=RefinedRobot(measure, self._labelled(partial, progress, execution)))
 
     def _labelled(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> VolumeData:
         """The labels of the voxels."""

@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.errors import NumericalError
 from wsrender.geometry.romberg import extrapolated
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
-from wsrender.mechanisms.five_bar.loci import BESIDE, BoundaryMeeting, Piece, end_point
+from wsrender.mechanisms.five_bar.loci import BESIDE, BoundaryMeeting, LocusPiece, end_point
 from wsrender.mechanisms.five_bar.mechanism import FiveBar
 from wsrender.mechanisms.five_bar.region import Arc, ArcRegion
 
@@ -44,7 +44,7 @@ class _Edge:
     error: float = 0.0
 
 
-def aspects(five_bar: FiveBar, working_mode: str, region: ArcRegion, pieces: Iterable[Piece]) -> list[Aspect]:
+def aspects(five_bar: FiveBar, working_mode: str, region: ArcRegion, pieces: Iterable[LocusPiece]) -> list[Aspect]:
     """The aspects of a working mode, the largest first; ``pieces`` are those of the type-2 loci in that mode.
 
     Within a working mode a posture belongs to each point, so the loci do not cross: faces follow from the order in
@@ -64,7 +64,7 @@ def _meets(event: BoundaryMeeting, bounding: set[str]) -> bool:
     return any(name in bounding for name, _ in event.arcs)
 
 
-def _both_ways(five_bar: FiveBar, piece: Piece) -> tuple[_Edge, _Edge]:
+def _both_ways(five_bar: FiveBar, piece: LocusPiece) -> tuple[_Edge, _Edge]:
     points = end_point(five_bar, piece.angles(SEGMENTS))
     if not piece.closed:  # it begins and ends a little beside the boundary
         share = BESIDE * SEGMENTS / (piece.high - piece.low)
@@ -80,7 +80,7 @@ def _polygon_area(points: np.ndarray) -> float:
     return 0.5 * float(np.sum(x * y1 - x1 * y))
 
 
-def _boundary_loops(five_bar: FiveBar, region: ArcRegion, pieces: list[Piece]) -> list[list[_Edge]]:
+def _boundary_loops(five_bar: FiveBar, region: ArcRegion, pieces: list[LocusPiece]) -> list[list[_Edge]]:
     """Loops around the faces that the pieces cut from the region.
 
     Around a face, the boundary is followed up to the next end of a piece, then that piece to its other end.
@@ -132,7 +132,7 @@ def _arc_edge(arc: Arc) -> _Edge:
 
 
 def _placed_ends(
-    five_bar: FiveBar, region: ArcRegion, pieces: list[Piece]
+    five_bar: FiveBar, region: ArcRegion, pieces: list[LocusPiece]
 ) -> dict[tuple[int, int], list[tuple[float, int, bool]]]:
     """(share, piece, whether its start) of the ends on each arc (loop, position), in the order along it."""
     found: dict[tuple[int, int], list[tuple[float, float, int, bool]]] = {}
@@ -146,7 +146,7 @@ def _placed_ends(
     return {arc: [entry[2:] for entry in sorted(entries)] for arc, entries in found.items()}  # type: ignore[misc]
 
 
-def _place(five_bar: FiveBar, region: ArcRegion, piece: Piece, from_start: bool) -> tuple[int, int, float]:
+def _place(five_bar: FiveBar, region: ArcRegion, piece: LocusPiece, from_start: bool) -> tuple[int, int, float]:
     """Loop, position in it and share of the arc on which an end of a piece lies.
 
     Where the boundary touches itself several ends of arcs lie there: the one is taken whose loop has the piece on its
@@ -173,7 +173,7 @@ def _place(five_bar: FiveBar, region: ArcRegion, piece: Piece, from_start: bool)
 def _unfit(
     five_bar: FiveBar,
     region: ArcRegion,
-    piece: Piece,
+    piece: LocusPiece,
     from_start: bool,
     middle: np.ndarray,
     found: tuple[int, int, int, float],
@@ -187,7 +187,7 @@ def _unfit(
     return outside, bool(np.cos(turn) < 0) == (share < 0.5)
 
 
-def _direction(five_bar: FiveBar, piece: Piece, arc: Arc, share: float, from_start: bool) -> float:
+def _direction(five_bar: FiveBar, piece: LocusPiece, arc: Arc, share: float, from_start: bool) -> float:
     """Angle from the boundary's direction to that in which the piece leaves it [rad], seen a little way along."""
     step = 0.01 * (piece.high - piece.low)
     t = piece.low + step if from_start else piece.high - step

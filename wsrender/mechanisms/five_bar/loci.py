@@ -47,7 +47,7 @@ class BoundaryMeeting:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class LocusPiece:
     """A curve from ``start`` to ``stop`` within one working mode and the limits; closed if it meets no boundary."""
 
     curve: Curve
@@ -173,7 +173,7 @@ def _turned(v: np.ndarray) -> np.ndarray:
     return np.stack([-v[:, 1], v[:, 0]], axis=1)
 
 
-def pieces(curve: Curve) -> list[Piece]:
+def pieces(curve: Curve) -> list[LocusPiece]:
     """The curve, cut where it meets a type-1 singularity or a limit of a base joint, less what limits exclude.
 
     The cuts are known within 1e-10 of the parameter.
@@ -181,13 +181,13 @@ def pieces(curve: Curve) -> list[Piece]:
     cuts = _cuts(curve)
     if not cuts:
         mode = _mode_at(curve, 1.0)
-        return [Piece(curve, mode, 0.0, 2 * np.pi)] if mode else []
+        return [LocusPiece(curve, mode, 0.0, 2 * np.pi)] if mode else []
     found = []
     for (_, start), (stop, _) in zip(cuts, [*cuts[1:], cuts[0]], strict=True):
         low, high = start + BESIDE, (stop if stop > start else stop + 2 * np.pi) - BESIDE
         mode = _mode_at(curve, (low + high) / 2)
         if mode:
-            found.append(Piece(curve, mode, low, high, _event(curve, low), _event(curve, high)))
+            found.append(LocusPiece(curve, mode, low, high, _event(curve, low), _event(curve, high)))
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from wsrender.mechanisms.five_bar.aspects import Aspect
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
 from wsrender.mechanisms.five_bar.isotropy import JointMap, PlaneLattice, iso_curves, isotropic_b, isotropic_points
-from wsrender.mechanisms.five_bar.loci import Piece, end_point, least_kappa_a_curves, pieces
+from wsrender.mechanisms.five_bar.loci import LocusPiece, end_point, least_kappa_a_curves, pieces
 from wsrender.mechanisms.five_bar.mechanism import FiveBar, wrapped
 from wsrender.mechanisms.five_bar.region import LEGS, Arc, ArcRegion
 from wsrender.volume.table import Table
@@ -38,7 +38,7 @@ def boundary_table(regions: dict[str, ArcRegion]) -> Table:
     return Table(columns, {"center": "m", "radius": "m", "start": "rad", "sweep": "rad"})
 
 
-def loci_table(five_bar: FiveBar, regions: dict[str, ArcRegion], type_2: Iterable[Piece]) -> Table:
+def loci_table(five_bar: FiveBar, regions: dict[str, ArcRegion], type_2: Iterable[LocusPiece]) -> Table:
     """Vertices of the loci in every working mode, curve by curve, each vertex on its locus.
 
     ``kind``: type_1 (det B = 0: the boundary but for limits), joint_limit, type_2 (det A = 0), least_kappa_a (the

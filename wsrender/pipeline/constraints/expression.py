@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.indices.chain_expression import Expressed, Frame, JointLimits
+from wsrender.indices.chain_expression import Expressed, JointFrame, JointLimits
 from wsrender.pipeline.constraints.constraint import Structure
 from wsrender.pipeline.constraints.region import Point
 from wsrender.robots.chain import Chain
@@ -68,7 +68,7 @@ class ExpressionConstraint:
         if name == "frames":
             frames = self.chain.frames(q)[:, :-1]
             frames = frames if moved is None else moved[:, None] @ frames
-            return [Frame(*_pose(T)) for T in frames.swapaxes(0, 1)]
+            return [JointFrame(*_pose(T)) for T in frames.swapaxes(0, 1)]
         if name == "limits":
             return self.limits
         if name == "g":  # turned with the arm, gravity pulls along other axes of it

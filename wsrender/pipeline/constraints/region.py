@@ -12,7 +12,7 @@ Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Region:
+class RegionConstraint:
     """What is admitted is in each of the shapes that are given, in the world.
 
     ``box``: lower and upper corner [m]; ``ball``: centre and radius [m]; ``half_space``: a point [m], and the normal

@@ -21,7 +21,7 @@ from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constrai
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.pipeline.constraints.orientation import Orientation
-from wsrender.pipeline.constraints.region import Point, Region
+from wsrender.pipeline.constraints.region import Point, RegionConstraint
 
 EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
 _ADDED: dict[str, ExpressionConstraint | HostConstraint] = {}  # by the user
@@ -108,9 +108,9 @@ def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
     return in_order(tuple(found))
 
 
-def _region(choice: RegionChoice) -> Region:
+def _region(choice: RegionChoice) -> RegionConstraint:
     bounds, ball, half = choice.box, choice.sphere, choice.half_space
-    return Region(
+    return RegionConstraint(
         bounds and (_corner(bounds.lower_m, -inf), _corner(bounds.upper_m, inf)),
         ball and (ball.position_m, ball.radius_m),
         half and (half.point_m, half.normal),

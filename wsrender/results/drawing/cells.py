@@ -9,7 +9,7 @@ from matplotlib.image import AxesImage
 
 from wsrender.results.drawing.okabe_ito import VERMILION
 from wsrender.results.drawing.style import INK, Heading, color_map, new_figure, quantity
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 EMPTY = "#f2f2f0"  # cells from which nothing is reached
 MARK = VERMILION  # what is best
@@ -95,7 +95,7 @@ def legend_below(figure: Figure, **options: Any) -> None:
     figure.legend(loc="outside lower center", frameon=False, fontsize=8, **{"ncols": 2} | options)
 
 
-def _ends(grid: Grid) -> list[tuple[float, float]]:
+def _ends(grid: CellGrid) -> list[tuple[float, float]]:
     return [(low, low + size * step) for low, size, step in zip(grid.origin, grid.shape, grid.step, strict=True)]
 
 

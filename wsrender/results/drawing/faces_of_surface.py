@@ -12,7 +12,7 @@ from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG
 from wsrender.results.drawing.camera import Camera
 from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style
-from wsrender.results.drawing.view import View, add_view, note
+from wsrender.results.drawing.view import DrawnAxes, add_view, note
 
 # (title, azimuth, elevation of the eye [deg]): every face is in sight in one of them.
 _VIEWS = (("from above", AZIMUTH_DEG, ELEVATION_DEG), ("from the other side, below", AZIMUTH_DEG + 180, -ELEVATION_DEG))
@@ -70,7 +70,7 @@ def shaded(faces: Faces, camera: Camera, light: np.ndarray = _LIGHT) -> tuple[np
     return corners[shown], colors[shown]
 
 
-def _draw_borders(view: View, faces: Faces, sides: np.ndarray, corners: np.ndarray) -> None:
+def _draw_borders(view: DrawnAxes, faces: Faces, sides: np.ndarray, corners: np.ndarray) -> None:
     """Edges and corners in sight, by their vertices."""
     eye = -view.space.camera.forward
     ends, points = faces.vertices[sides], faces.vertices[corners]

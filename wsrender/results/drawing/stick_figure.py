@@ -16,7 +16,7 @@ from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.faces_of_surface import shaded
 from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERMILION
 from wsrender.results.drawing.style import GREY, INK, Heading, color_map, paper_style
-from wsrender.results.drawing.view import BAR, View, inches, new_view
+from wsrender.results.drawing.view import BAR, DrawnAxes, inches, new_view
 from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
@@ -91,7 +91,7 @@ def robot(
     return figure
 
 
-def draw_arm(view: View, arm: np.ndarray, color: str = INK, *, body: Faces | None = None) -> None:
+def draw_arm(view: DrawnAxes, arm: np.ndarray, color: str = INK, *, body: Faces | None = None) -> None:
     """An arm through base, joints and tip (L+2, 3) [m], or its ``body``."""
     if body is not None:
         draw_bodies(view, body)
@@ -104,7 +104,7 @@ def draw_arm(view: View, arm: np.ndarray, color: str = INK, *, body: Faces | Non
     view.add_marks(arm[-1:], marker="*", ms=13, mfc=_ACCENT, mec="white", mew=0.7, zorder=9)
 
 
-def draw_bodies(view: View, body: Faces, pale: bool = False) -> None:
+def draw_bodies(view: DrawnAxes, body: Faces, pale: bool = False) -> None:
     """The bodies of an arm, before what else is drawn of its workspace."""
     corners, colors = shaded(body, view.space.camera)
     view.add_surface(corners, colors, alpha=_PALE if pale else 1.0, zorder=4.0 if pale else 5.0)

@@ -24,7 +24,7 @@ _HIDDEN, _SURFACE = 1.5, 2.0  # heights (zorder) of what surfaces hide, and of s
 
 
 @dataclass(eq=False)
-class View:
+class DrawnAxes:
     """Axes in half heights of the picture, in which a ``space`` is drawn; ``size`` in pixels."""
 
     axes: Axes
@@ -104,7 +104,7 @@ class View:
 
 def new_view(
     points: np.ndarray, heading: Heading | str, frame: str, size: tuple[float, float] = _SIZE
-) -> tuple[Figure, View]:
+) -> tuple[Figure, DrawnAxes]:
     """A figure with room for a colour bar, and a view whose box holds points (N, 3) [m]."""
     figure = new_figure(*size, heading, layout=None)
     note(figure, 0.18, 0.12, f"{frame} frame")
@@ -118,7 +118,7 @@ def add_view(
     azimuth_deg: float = AZIMUTH_DEG,
     elevation_deg: float = ELEVATION_DEG,
     **axes_of: Any,
-) -> View:
+) -> DrawnAxes:
     """A view at left, bottom, width and height [in] of a figure, whose box holds points (N, 3) [m].
 
     ``axes_of``: ``stretch`` and ``names`` of a `Space`.
@@ -126,7 +126,7 @@ def add_view(
     axes = figure.add_axes(inches(figure, place))
     axes.set_axis_off()
     pixels = round(place[2] * DPI), round(place[3] * DPI)
-    view = View(axes, space_around(points, pixels, azimuth_deg, elevation_deg, **axes_of), pixels)
+    view = DrawnAxes(axes, space_around(points, pixels, azimuth_deg, elevation_deg, **axes_of), pixels)
     view._set_limits()
     view.add_numbers()
     return view

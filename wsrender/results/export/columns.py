@@ -10,7 +10,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.results.export.names import unique_names
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 DESCRIPTION = "wsrender"  # name of the description in a file, so no column may be called so
 POSITION = ("x", "y", "z")
@@ -112,7 +112,7 @@ class TableColumns:
     columns: dict[str, tuple[str, ...]]
     wide: tuple[str, ...] = ()
     units: dict[str, str] = field(default_factory=dict)
-    grid: Grid | None = None
+    grid: CellGrid | None = None
 
     @classmethod
     def of(cls, table: Table) -> "TableColumns":
@@ -144,7 +144,7 @@ class TableColumns:
         columns = {name: tuple(parts) for name, parts in data["table"].items()}
         if grid := data.get("grid"):
             axes, origin, step, shape = (tuple(grid[name]) for name in ("axes", "origin", "step", "shape"))
-            grid = Grid(axes, origin, step, shape, grid["frame"])
+            grid = CellGrid(axes, origin, step, shape, grid["frame"])
         return cls(columns, tuple(data["wide"]), dict(data["units"]), grid)
 
     def arrays(self, table: Table) -> dict[str, np.ndarray]:

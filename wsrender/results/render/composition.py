@@ -19,7 +19,7 @@ from wsrender.results.drawing.view import inches, note, write_labels
 from wsrender.results.render import environment as surroundings
 from wsrender.results.render.environment import Item
 from wsrender.results.render.process import drawn
-from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
+from wsrender.results.render.scene import Cloud, Color, Dots, DrawnScene, DrawnSurface, Layer, Lines, Plates, Rods
 from wsrender.results.render.subject import Subject
 from wsrender.results.render.views import ROBOT_COLORS, VIEWS, Choice
 from wsrender.world.triangles import foot
@@ -80,7 +80,7 @@ def picture(
     grid, frame = space.panes()
     panes = [Lines(grid, (0.87, 0.87, 0.87), 1.0), Lines(frame, (0.6, 0.6, 0.6), 1.2)]
     layers = [*panes, *_around(items, space), *_robots(subjects, space), *drawing.layers]
-    image = drawn(Scene(space.camera, PANEL_PIXELS, layers))
+    image = drawn(DrawnScene(space.camera, PANEL_PIXELS, layers))
     handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(items)]
     return figure_of(image, space, title=title, notes=drawing.notes, handles=handles, scale=drawing.scale)
 
@@ -117,7 +117,7 @@ def _layer_points(layer: Layer) -> np.ndarray:
             return layer.vertices
         case Plates():
             return layer.corners.reshape(-1, 3)
-        case Points():
+        case Dots():
             return layer.positions
         case Cloud():
             return np.stack([layer.origin, layer.origin + np.array(layer.levels.shape) * layer.voxel_size])

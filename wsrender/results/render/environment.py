@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -10,18 +10,19 @@ from wsrender.documents import environment as world
 from wsrender.errors import InputError
 from wsrender.results.render.scene import Color, DrawnSurface
 from wsrender.robot.surroundings import shapes_around
-from wsrender.world.surfaces import Surface
+from wsrender.world.surfaces import ClosedSurface
 from wsrender.world.triangles import plate, triangles
 
 TABLE_TOP = 0.04  # thickness of a table's top and legs [m]
 
 
 @dataclass(frozen=True)
-class Box:
+class RenderedBox:
     """A box with edges along the world's axes: ``center_m`` and ``size_m``, each (x, y, z) [m]."""
 
     center_m: tuple[float, float, float]
     size_m: tuple[float, float, float]
+    kind: ClassVar[str] = "box"
 
     def __post_init__(self):
         _check("box.center_m", self.center_m, 3)
@@ -33,7 +34,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Table:
+class RenderedTable:
     """A table on four legs: ``center_m`` (x, y, z) is the middle of its top, ``size_m`` (x, y) of the top [m].
 
     It stands on ``floor_m``, the height of the floor [m].
@@ -42,6 +43,7 @@ class Table:
     center_m: tuple[float, float, float]
     size_m: tuple[float, float]
     floor_m: float = 0.0
+    kind: ClassVar[str] = "table"
 
     def __post_init__(self):
         _check("table.center_m", self.center_m, 3)
@@ -69,6 +71,7 @@ class Floor:
     """A floor at a height [m], as large as the picture."""
 
     height_m: float = 0.0
+    kind: ClassVar[str] = "floor"
 
     def __post_init__(self):
         _check("floor.height_m", (self.height_m,), 1)
@@ -79,20 +82,24 @@ class Floor:
 
 
 @dataclass(frozen=True)
-class Standing:
+class RenderedItem:
     """A robot, a scene, a mesh or a height field: its shapes, read once, and what a legend calls it."""
 
     kind: str
-    stands: tuple[world.Shape | Surface, ...]
+    stands: tuple[world.Shape | ClosedSurface, ...]
 
-    def shapes(self) -> tuple[world.Shape | Surface, ...]:
+    def shapes(self) -> tuple[world.Shape | ClosedSurface, ...]:
         """Its shapes in the world."""
         return self.stands
 
 
-Item = Box | Table | Floor | Standing | world.Shape
+Item = RenderedBox | RenderedTable | Floor | RenderedItem | world.Shape
 _WOOD: Color = (0.72, 0.62, 0.5)
-COLORS: dict[type, Color] = {Table: (0.62, 0.66, 0.7), Floor: (0.86, 0.86, 0.84), world.HalfSpace: (0.86, 0.86, 0.84)}
+COLORS: dict[type, Color] = {
+    RenderedTable: (0.62, 0.66, 0.7),
+    Floor: (0.86, 0.86, 0.84),
+    world.HalfSpace: (0.86, 0.86, 0.84),
+}
 
 
 def color(item: Item) -> Color:
@@ -102,9 +109,8 @@ def color(item: Item) -> Color:
 
 def label(item: Item) -> str:
     """What a legend calls an item: its kind."""
-    if isinstance(item, Standing):
-        return item.kind
-    return type(item).__name__.lower() if isinstance(item, Box | Table | Floor) else item.shape.replace("_", " ")
+    named = isinstance(item, RenderedBox | RenderedTable | Floor | RenderedItem)
+    return item.kind if named else item.shape.replace("_", " ")
 
 
 def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
@@ -113,11 +119,13 @@ def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
     for k, item in enumerate(items):
         if isinstance(item, world.OtherRobot | world.Scene | world.Mesh | world.HeightField):
             try:
-                items[k] = Standing(item.shape.replace("_", " "), tuple(each.shape for each in shapes_around([item])))
+                items[k] = RenderedItem(
+                    item.shape.replace("_", " "), tuple(each.shape for each in shapes_around([item]))
+                )
             except InputError as error:
                 raise error.at(error.field.replace("items.0", f"environment.{k}", 1)) from None
             continue
-        if not isinstance(item, (Box, Table, Floor, *world.SHAPES.values())):
+        if not isinstance(item, (RenderedBox, RenderedTable, Floor, *world.SHAPES.values())):
             allowed = "a wsrender Environment's shape, or a wsrender.results.render Floor, Table or Box"
             raise InputError(f"environment.{k}", f"must be {allowed}, not {item!r}")
     return items
@@ -141,8 +149,8 @@ def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[DrawnSurf
     return [DrawnSurface(*mesh, color(item)) for mesh in meshes]
 
 
-def _shapes(item: Item) -> "Sequence[world.Shape | Surface]":
-    return item.shapes() if isinstance(item, Box | Table | Floor | Standing) else [item]
+def _shapes(item: Item) -> "Sequence[world.Shape | ClosedSurface]":
+    return item.shapes() if isinstance(item, RenderedBox | RenderedTable | Floor | RenderedItem) else [item]
 
 
 def _check(field: str, values: tuple[float, ...], count: int, positive: bool = False) -> None:

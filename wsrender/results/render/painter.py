@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
-from wsrender.results.render.scene import Camera, Cloud, DrawnSurface, Lines, Plates, Points, Rods, Scene
+from wsrender.results.render.scene import Camera, Cloud, Dots, DrawnScene, DrawnSurface, Lines, Plates, Rods
 
 OVERSAMPLING = 2  # pixels drawn per pixel of the picture, each way: edges without steps
 PEELS = 6  # translucent layers sorted per pixel; more change little at the usual transparency
@@ -24,7 +24,7 @@ def main() -> None:
     np.save(Path(path), draw(scene), allow_pickle=False)
 
 
-def draw(scene: Scene) -> np.ndarray:
+def draw(scene: DrawnScene) -> np.ndarray:
     """The picture of a scene, uint8 (height, width, 3)."""
     width, height = scene.size
     plotter: Any = pv.Plotter(
@@ -44,7 +44,7 @@ def draw(scene: Scene) -> np.ndarray:
     return np.round((1 - shine) * picture + shine * arms[:, :, :3]).astype(np.uint8)
 
 
-def _arms_alone(plotter: Any, scene: Scene) -> np.ndarray:
+def _arms_alone(plotter: Any, scene: DrawnScene) -> np.ndarray:
     """The arms without what hides them, (height, width, 4), clear where there is none."""
     plotter.clear_actors()
     for layer in scene.layers:
@@ -69,7 +69,7 @@ def _look(view: Any, camera: Camera, depth: float) -> None:
     view.clipping_range = (0.5 * depth, 3.5 * depth)
 
 
-def _depth(scene: Scene) -> float:
+def _depth(scene: DrawnScene) -> float:
     """A length [m] beyond the distance of anything from the centre of the picture."""
     lines = [layer.ends.reshape(-1, 3) for layer in scene.layers if isinstance(layer, Lines)]
     corners = np.concatenate([*lines, scene.camera.center[None]])
@@ -96,7 +96,7 @@ def _plates(plotter: Any, plates: Plates) -> None:
     plotter.add_mesh(mesh, scalars="colors", rgb=True, lighting=False)
 
 
-def _points(plotter: Any, points: Points) -> None:
+def _points(plotter: Any, points: Dots) -> None:
     cloud = pv.PolyData(points.positions)
     cloud["colors"] = points.colors
     size = points.size * OVERSAMPLING
@@ -141,4 +141,4 @@ def _rods(plotter: Any, rods: Rods) -> None:
     plotter.add_mesh(pv.Sphere(2.6 * rods.radius, rods.points[-1]), color=rods.tip_color, **metal)
 
 
-_PAINTERS = {DrawnSurface: _surface, Plates: _plates, Points: _points, Cloud: _cloud, Lines: _lines, Rods: _rods}
+_PAINTERS = {DrawnSurface: _surface, Plates: _plates, Dots: _points, Cloud: _cloud, Lines: _lines, Rods: _rods}

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from wsrender.errors import MissingExtraError, RenderError
-from wsrender.results.render.scene import Scene
+from wsrender.results.render.scene import DrawnScene
 
 CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # VTK's own variable; set by the user, nothing else is tried
 EGL, OSMESA, X11 = "vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow", "vtkXOpenGLRenderWindow"
@@ -120,7 +120,7 @@ def _refusal(faults: dict[str, str]) -> str:
     return f"{text}; on Debian and Ubuntu: apt install {' '.join(packages)}{other}"
 
 
-def drawn(scene: Scene, timeout_s: float = TIMEOUT_S) -> np.ndarray:
+def drawn(scene: DrawnScene, timeout_s: float = TIMEOUT_S) -> np.ndarray:
     """The picture of a scene, uint8 (height, width, 3).
 
     Raises MissingExtraError without PyVista; RenderError where VTK cannot draw, crashes or is too slow.

@@ -34,7 +34,7 @@ class Plates:
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class Dots:
     """Dots: ``positions`` (N, 3) [m], uint8 ``colors`` (N, 3), ``size`` in pixels of the figure."""
 
     positions: np.ndarray
@@ -75,11 +75,11 @@ class Rods:
     tip_color: Color = (0.784, 0.063, 0.18)
 
 
-Layer = DrawnSurface | Plates | Points | Cloud | Lines | Rods
+Layer = DrawnSurface | Plates | Dots | Cloud | Lines | Rods
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class DrawnScene:
     """Layers, seen by a camera in a picture of ``size`` (width, height) pixels."""
 
     camera: Camera

@@ -17,7 +17,7 @@ from wsrender.results.drawing.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.results.drawing.planes import NAMES, Field, layer_at, plane_normals, shared_scale, voxel_field
 from wsrender.results.drawing.stick_figure import ROBOTS
 from wsrender.results.drawing.style import quantity
-from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points
+from wsrender.results.render.scene import Cloud, Color, Dots, DrawnSurface, Layer, Lines, Plates
 from wsrender.results.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
@@ -119,7 +119,7 @@ def scatter(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for subject, cloud, value in zip(subjects, clouds, values, strict=True):
         kept = ~_towards_eye(cloud.position, subject, choice.azimuth_deg)
         label = label if kept.all() else "samples, cut open"
-        drawing.layers.append(Points(cloud.position[kept], _colors(scale, value[kept]), DOT))
+        drawing.layers.append(Dots(cloud.position[kept], _colors(scale, value[kept]), DOT))
     drawing.handles.append(Line2D([], [], ls="", marker="o", ms=3, color=scale.colors(0.5), label=label))
     return drawing
 

@@ -29,7 +29,7 @@ class Data(TypedDict):
 
 
 @_strict
-class Chain(TypedDict):
+class DrawnChain(TypedDict):
     """One kinematic chain of n coordinates and L joints, as `wsrender.robots.chain.Chain` says it."""
 
     joints: list[str]
@@ -48,7 +48,7 @@ class Chain(TypedDict):
 
 
 @_strict
-class Link(TypedDict):
+class DrawnLink(TypedDict):
     """Bodies in one frame: 0 is the base, k + 1 the frame of joint k after its motion."""
 
     name: str
@@ -66,12 +66,12 @@ class Samples(TypedDict):
 
 
 @_strict
-class Robot(TypedDict):
+class DrawnRobot(TypedDict):
     """A robot whose motion the page computes."""
 
     name: str
-    chain: Chain
-    links: list[Link]
+    chain: DrawnChain
+    links: list[DrawnLink]
     home: list[float]
     samples: NotRequired[Samples]
 
@@ -134,7 +134,7 @@ class Volume(TypedDict):
 
 
 @_strict
-class Mesh(TypedDict):
+class DrawnMesh(TypedDict):
     """Triangles."""
 
     name: str
@@ -145,7 +145,7 @@ class Mesh(TypedDict):
 
 
 @_strict
-class Points(TypedDict):
+class DrawnPoints(TypedDict):
     """Points, quantised to a box: uint16 triples from lower to upper."""
 
     name: str
@@ -169,7 +169,7 @@ class Glyphs(TypedDict):
 
 
 @_strict
-class Curves(TypedDict):
+class DrawnCurves(TypedDict):
     """Lines through points."""
 
     name: str
@@ -267,13 +267,13 @@ class Manifest(TypedDict):
     headline: list[Fact]
     warnings: list[str]
     job: Any
-    robots: list[Robot]
+    robots: list[DrawnRobot]
     skeletons: list[Skeleton]
     volumes: list[Volume]
-    meshes: list[Mesh]
-    points: list[Points]
+    meshes: list[DrawnMesh]
+    points: list[DrawnPoints]
     glyphs: list[Glyphs]
-    curves: list[Curves]
+    curves: list[DrawnCurves]
     maps: list[FloorMap]
     plots: list[Plot]
     mapping: Mapping | None

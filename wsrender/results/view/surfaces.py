@@ -16,7 +16,7 @@ _CREASE = np.deg2rad(30.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ColoredMesh:
     """Triangles of one colour (red, green, blue[, alpha], 0 … 1): ``vertices`` (V, 3) [m], ``faces`` (F, 3)."""
 
     vertices: np.ndarray
@@ -25,7 +25,7 @@ class Part:
     name: str = ""
 
 
-def glb(parts: Iterable[Part]) -> bytes:
+def glb(parts: Iterable[ColoredMesh]) -> bytes:
     """A GLB file with a node for each part, of its name; those far from the origin stand relative to their node."""
     import trimesh
     from trimesh.visual import TextureVisuals

@@ -19,7 +19,7 @@ from wsrender.results.view.additions import Additions
 from wsrender.results.view.blobs import Blobs, Encoding
 from wsrender.results.view.container import message, within
 from wsrender.results.view.edited import Edited
-from wsrender.results.view.manifest import Manifest, Mesh, Role
+from wsrender.results.view.manifest import DrawnMesh, Manifest, Role
 from wsrender.results.view.robots import (
     ShownArm,
     add_environment,
@@ -29,7 +29,7 @@ from wsrender.results.view.robots import (
     shown_alone,
     surroundings,
 )
-from wsrender.results.view.surfaces import MOST_TRIANGLES, Part, glb
+from wsrender.results.view.surfaces import MOST_TRIANGLES, ColoredMesh, glb
 from wsrender.results.view.volumes import MOST_VOXELS, add_volumes
 from wsrender.results.view.words import said
 from wsrender.robot import Robot, as_robot, robot_of_spec
@@ -185,7 +185,7 @@ def _facts(document: dict[str, Any]) -> Iterator[dict[str, str]]:
 
 def _meshes(
     blobs: Blobs, meshes: "Mapping[str, trimesh.Trimesh]", faces: Mapping[str, Faces], omitted: list[str]
-) -> Iterator[Mesh]:
+) -> Iterator[DrawnMesh]:
     for k, (name, mesh) in enumerate(meshes.items()):
         if len(mesh.faces) > MOST_TRIANGLES:
             omitted.append(f"{name}: it has {len(mesh.faces):,} triangles; at most {MOST_TRIANGLES:,} are shown")
@@ -195,7 +195,7 @@ def _meshes(
         yield {"name": name, "label": said(name), "geometry": blobs.file(f"mesh{k}", content), "role": role}
 
 
-def _parts_of(mesh: "trimesh.Trimesh", faces: Faces) -> Iterator[Part]:
+def _parts_of(mesh: "trimesh.Trimesh", faces: Faces) -> Iterator[ColoredMesh]:
     """A mesh by the faces that its triangles belong to, each in its colour: the mesh's own, or that of the faces."""
     visual = mesh.visual
     number = np.asarray(mesh.face_attributes.get("surface", faces.number)).astype(np.int64)
@@ -209,7 +209,7 @@ def _parts_of(mesh: "trimesh.Trimesh", faces: Faces) -> Iterator[Part]:
         else:
             used, local = np.unique(faces.triangles[rows], return_inverse=True)
         label = faces.labels.get(int(k), f"part {k}" if len(numbers) > 1 else "")
-        yield Part(faces.vertices[used], local.reshape(-1, 3), tuple(map(float, color)), label)
+        yield ColoredMesh(faces.vertices[used], local.reshape(-1, 3), tuple(map(float, color)), label)
 
 
 def _box(volumes: Iterable[VolumeData | None], arms: Sequence[ShownArm]) -> tuple[np.ndarray, np.ndarray]:

@@ -12,9 +12,9 @@ from httpx2 import URL, AsyncClient, ConnectError, ConnectTimeout, HTTPError, Li
 
 from wsrender import __version__
 from wsrender.errors import InputError
-from wsrender_server.jobs.records import DeliveryRecord, Outcome
+from wsrender_server.jobs.records import DeliveryOutcome, DeliveryRecord
 from wsrender_server.jobs.webhooks.signature import signed_headers
-from wsrender_server.jobs.webhooks.targets import Targets
+from wsrender_server.jobs.webhooks.targets import AllowedTargets
 from wsrender_server.settings import Settings
 
 ATTEMPT_S = 10.0  # from the look-up of the name to the head of the answer
@@ -34,7 +34,7 @@ class Sender:
     """
 
     def __init__(self, settings: Settings, tls: ssl.SSLContext | None = None):
-        self._targets = Targets(settings.webhook_targets, settings.webhook_networks)
+        self._targets = AllowedTargets(settings.webhook_targets, settings.webhook_networks)
         self._tls = tls
         # Of its own: a resolver that hangs holds up nothing else.
         self._resolver = ThreadPoolExecutor(LOOKUPS, thread_name_prefix="webhook-names")
@@ -55,25 +55,25 @@ class Sender:
         self._resolver.shutdown(wait=False, cancel_futures=True)
         await self._client.aclose()
 
-    async def send(self, message: DeliveryRecord) -> Outcome:
+    async def send(self, message: DeliveryRecord) -> DeliveryOutcome:
         """Try once; any fault is an outcome."""
         try:
             async with asyncio.timeout(ATTEMPT_S):
                 url = self._targets.check(message.url)
                 status = await self._post(url, await self._targets.addresses(url, self._resolver), message)
         except TimeoutError:
-            return Outcome(False, f"no answer within {ATTEMPT_S:g} s")
+            return DeliveryOutcome(False, f"no answer within {ATTEMPT_S:g} s")
         except InputError as error:
-            return Outcome(False, error.message[:LONGEST_SAID])
+            return DeliveryOutcome(False, error.message[:LONGEST_SAID])
         except (HTTPError, OSError, ValueError) as error:
-            return Outcome(False, f"no answer: {error or type(error).__name__}"[:LONGEST_SAID])
+            return DeliveryOutcome(False, f"no answer: {error or type(error).__name__}"[:LONGEST_SAID])
         except Exception:
             log.exception("a delivery failed by a fault of the server", message=message.id)
-            return Outcome(False, "a fault of the server")
+            return DeliveryOutcome(False, "a fault of the server")
         said = f"the receiver answered {status}"
         if 300 <= status < 400:
             said += "; redirects are not followed"
-        return Outcome(200 <= status < 300, said, status == GONE)
+        return DeliveryOutcome(200 <= status < 300, said, status == GONE)
 
     async def _post(self, url: URL, addresses: list[str], message: DeliveryRecord) -> int:
         """The status of the answer, of which no more than its head is read."""

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from wsrender.errors import InputError
 from wsrender_server.jobs.database import Transactions, lock_name
 from wsrender_server.jobs.faults import InvalidTransition, QuotaExceeded
-from wsrender_server.jobs.records import DeliveryRecord, JobState, Outcome, WebhookRecord
+from wsrender_server.jobs.records import DeliveryOutcome, DeliveryRecord, JobState, WebhookRecord
 from wsrender_server.jobs.tables import Delivery, Webhook, add_delivery, message
 from wsrender_server.jobs.webhooks.signature import new_secret
 
@@ -106,7 +106,10 @@ class WebhookStore:
             return [DeliveryRecord(*row) for row in session.execute(query)]
 
     def settle_deliveries(
-        self, outcomes: Mapping[DeliveryRecord, Outcome], waits_s: Mapping[DeliveryRecord, float], too_old: datetime
+        self,
+        outcomes: Mapping[DeliveryRecord, DeliveryOutcome],
+        waits_s: Mapping[DeliveryRecord, float],
+        too_old: datetime,
     ) -> None:
         """Record what came of attempts; ``waits_s`` is the time to the next of one that has failed [s].
 

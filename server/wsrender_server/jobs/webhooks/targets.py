@@ -16,7 +16,7 @@ PORTS = {"http": 80, "https": 443}
 NOT_PUBLIC = (IPv6Network("2002::/16"), IPv6Network("fec0::/10"))
 
 
-class Targets:
+class AllowedTargets:
     """Origins that the settings allow, and networks that they allow beside public addresses."""
 
     def __init__(self, origins: Sequence[str], networks: Sequence[IPv4Network | IPv6Network]):
