@@ -18,7 +18,8 @@ from wsrender.results.export.result_format import current_document
 from wsrender.results.result import Result
 
 FINISHED = ("succeeded", "failed", "canceled", "timed_out", "expired")
-LONG_POLL_S = 5.0  # between two reports of progress at the latest
+LONG_POLL_S = 20.0  # proxies allow it
+REPORTED_S = 5.0  # between two reports of progress at the latest
 SHORTEST_POLL_S = 0.2
 RECONNECT_S = 600.0  # a server's restart, a laptop's sleep
 
@@ -87,7 +88,7 @@ class Job:
             left = end - time.monotonic()
             if left <= 0:
                 raise WaitTimeoutError(f"job {self.id} is still {self.state} after {timeout:g} s")
-            self._poll(min(LONG_POLL_S, left), min(RECONNECT_S, left), bar)
+            self._poll(min(REPORTED_S if bar else LONG_POLL_S, left), min(RECONNECT_S, left), bar)
             self._report(bar)
 
     def result(self) -> Result:
@@ -145,10 +146,13 @@ class Job:
 
     def _poll(self, wait_s: float, patience_s: float, bar: RunProgress | None) -> None:
         asked = time.monotonic()
+        params: dict[str, Any] = {"wait": f"{wait_s:.3f}"}
+        if bar:  # else no news is worth an answer but the end
+            params["after"] = self.record.get("last_event") or 0
         self.record = self._connection.request(
             "GET",
             self._path,
-            params={"wait": f"{wait_s:.3f}", "after": self.record.get("last_event") or 0},
+            params=params,
             timeout=wait_s + self._connection.timeout_s,
             patience_s=patience_s,
             on_loss=lambda reason: bar(0, 1, f"server lost ({reason}), trying again") if bar else None,

@@ -65,6 +65,25 @@ def test_wait_survives_a_restart(server, client, clock):
     assert all(float(poll["wait"]) > 0 for poll in polls)
 
 
+@pytest.mark.parametrize("progress", [False, True])
+def test_the_end_of_a_job_is_known_when_it_comes(progress, server, client, clock):
+    """A server answers when there is an event newer than ``after``, else when the job has ended."""
+    news = [(0.0, "queued"), (0.01, "running"), (0.05, "succeeded")]  # when, what
+
+    def watched(request):
+        asked = request.url.params
+        wanted = int(asked["after"]) + 1 if "after" in asked else 2
+        if "wait" in asked:
+            clock.now = max(clock.now, news[wanted][0])
+        number = max(k for k, (at, _) in enumerate(news) if at <= clock.now)
+        return says(record(news[number][1], last_event=number))
+
+    server.answer("GET", "/v1/jobs/j1", watched)
+    assert client.job("j1").wait(progress=progress).state == "succeeded"
+    assert len(server.requests) == (3 if progress else 2)
+    assert progress or (clock.now, clock.pauses) == (0.05, [])
+
+
 def test_wait_ends_with_its_timeout(server, client, clock):
     def slow(request):
         clock.now += float(request.url.params.get("wait", 0))
