@@ -31,7 +31,7 @@ from wsrender.version import __version__
 
 if TYPE_CHECKING:
     from wsrender import run
-    from wsrender.client import Client
+    from wsrender.client import AsyncClient, Client
     from wsrender.documents.array_files import ArrayFile
     from wsrender.documents.environment import (
         Box,
@@ -90,6 +90,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AccessError",
     "ArrayFile",
+    "AsyncClient",
     "BoundaryBiased",
     "Box",
     "Capsule",
@@ -185,7 +186,7 @@ __all__ = [
 ]
 
 _NAMES_OF_MODULE = {
-    "wsrender.client": ("Client",),
+    "wsrender.client": ("AsyncClient", "Client"),
     "wsrender.results.export.formats": ("Format", "register_format"),
     "wsrender.results.presentation": ("Picture", "register_picture"),
     "wsrender.indices": ("Index", "Option", "register_index"),

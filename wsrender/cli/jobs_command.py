@@ -3,7 +3,7 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -16,6 +16,9 @@ from wsrender.cli.job_command import job_command
 from wsrender.cli.listing import PIPED_WIDTH
 from wsrender.cli.saving import Formats, check_output, save_and_report
 from wsrender.errors import InputError
+
+if TYPE_CHECKING:
+    from wsrender.client.records import JobState
 
 SERVER = "http://127.0.0.1:8000"
 
@@ -46,7 +49,7 @@ def list_jobs(
 
     table = Table("id", "state", "analysis", "done", "created", "labels", box=SIMPLE_HEAD, show_edge=False)
     with one_line_faults(), Client(server, token) as client:
-        for job in client.jobs(state=state, limit=limit):
+        for job in client.jobs(state=cast("JobState | None", state), limit=limit):
             labels = " ".join(f"{key}={value}" for key, value in (job.record.get("labels") or {}).items())
             done = f"{100 * (job.progress.get('fraction') or 0):.0f} %"
             created = str(job.record.get("created_at") or "")[:19]

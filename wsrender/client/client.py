@@ -1,40 +1,31 @@
 """A job server, as seen from Python."""
 
-import math
-import uuid
-from collections.abc import Iterator, Mapping
-from io import BytesIO
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Self
-from urllib.parse import quote
+from typing import Literal, Self
 
 import httpx2
 
+from wsrender.client import operations
 from wsrender.client.batch import Batch
 from wsrender.client.connection import Connection
+from wsrender.client.documents import uploaded
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
-from wsrender.documents.arm import FILED, OF_POINTS, dotted, models_in
-from wsrender.documents.array_files import TABLE_TYPES
-from wsrender.documents.problems import path_text
-from wsrender.documents.shapes import MEDIA_TYPES
-from wsrender.errors import DocumentError, InputError
+from wsrender.client.records import Analysis, Estimate, JobDocument, JobState, LibraryRobot, Worker
 from wsrender.keywords import keywords
-
-PAGE = 100  # jobs in one answer
-LONGEST_SENT = 100_000  # numbers of an array that a document lists
-NPY, ZIP = b"\x93NUMPY", b"PK"  # with which such files begin
 
 
 @keywords
 class Client:
-    """A connection to a job server; a context manager.
+    """A connection to a job server; a context manager. `AsyncClient` is the same for asyncio.
 
     ``url`` is the server's address, ``token`` an API key where it asks for one. ``timeout_s`` bounds the wait for an
     answer, ``patience_s`` for how long a request is sent again while the connection is lost.
 
-    Every method raises ServerConnectionError where the server cannot be reached, AccessError for a wrong key,
-    NotFoundError, QuotaError, and the errors of a local run (DocumentError, ModelError, …) for a wrong document.
+    Every method raises ServerConnectionError where the server cannot be reached or the client is closed, AccessError
+    for a wrong key, NotFoundError, QuotaError, and the errors of a local run (DocumentError, ModelError, …) for a wrong
+    document; ServerError, with both versions where it can, for an answer that this version does not understand.
     """
 
     def __init__(
@@ -46,15 +37,16 @@ class Client:
         patience_s: float = 60.0,
         transport: httpx2.BaseTransport | None = None,
     ):
-        self._url, self._token, self._timeout_s = url, token, timeout_s
+        self._token = token
         self._connection = Connection(url, token, timeout_s, patience_s, transport)
+        self._server = self._connection.server
 
     def close(self) -> None:
         """Close all sockets."""
         self._connection.close()
 
     def __repr__(self) -> str:
-        return f"Client({self._url!r})"
+        return f"Client({self._server.url!r})"
 
     def __enter__(self) -> Self:
         return self
@@ -62,17 +54,17 @@ class Client:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def analyses(self) -> list[dict[str, Any]]:
+    def analyses(self) -> list[Analysis]:
         """The analyses of the server: id, title, description and JSON Schema of their documents."""
-        return _items(self._get("/v1/analyses"))
+        return self._connection.run(operations.listed(self._server, "/v1/analyses"))
 
-    def robots(self) -> list[dict[str, Any]]:
+    def robots(self) -> list[LibraryRobot]:
         """The robots of the server's library."""
-        return _items(self._get("/v1/robots"))
+        return self._connection.run(operations.listed(self._server, "/v1/robots"))
 
-    def workers(self) -> list[dict[str, Any]]:
+    def workers(self) -> list[Worker]:
         """The workers that compute for the server: address, host, target, devices, busy."""
-        return _items(self._get("/v1/workers"))
+        return self._connection.run(operations.listed(self._server, "/v1/workers"))
 
     def upload_model(self, model: str | Path | bytes, field: str = "robot.path") -> str:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
@@ -83,14 +75,11 @@ class Client:
         tables (.csv, .parquet, .npy) of targets, configurations and points, for ``"targets": {"model": sha256}``.
         Raises InputError, naming ``field``, where the file cannot be read, ModelError where it is no model.
         """
-        content = model if isinstance(model, bytes) else _read(Path(model), field)
-        headers = {"Content-Type": _media_type(model, content)}
-        answer = self._connection.request("POST", "/v1/models", content=content, headers=headers)
-        return answer.json()["sha256"]
+        return self._connection.run(uploaded(self._server, model, field))
 
     def submit(
         self,
-        job: Any,
+        job: JobDocument,
         *,
         labels: Mapping[str, str] | None = None,
         priority: int = 0,
@@ -104,15 +93,8 @@ class Client:
         ``labels`` are free text to find the job by, larger ``priority`` goes first, ``timeout_s`` bounds the run. The
         idempotency key (default: a new one) makes sure that a request sent again after a lost connection is one job.
         """
-        body = self._document(job)
-        if labels:
-            body["labels"] = dict(labels)
-        if priority:
-            body["priority"] = priority
-        if timeout_s is not None:
-            body["timeout_s"] = timeout_s
-        headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
-        return Job(self._connection, self._connection.request("POST", "/v1/jobs", json=body, headers=headers).json())
+        steps = operations.submitted(self._server, job, labels, priority, timeout_s, idempotency_key)
+        return Job(self._connection, self._connection.run(steps))
 
     def batch(self, *, at_once: int = 8, cancel: bool = False) -> Batch:
         """Many jobs, submitted and waited for ``at_once`` (1 to 64) at a time.
@@ -122,147 +104,52 @@ class Client:
         """
         return Batch(self.submit, at_once, cancel)
 
-    def estimate(self, job: Any) -> dict[str, Any]:
+    def estimate(self, job: JobDocument) -> Estimate:
         """Check a job without running it: samples, bytes and seconds that it would take."""
-        return self._connection.request("POST", "/v1/jobs:validate", json=self._document(job)).json()
+        return self._connection.run(operations.estimated(self._server, job))
 
     def job(self, id: str) -> Job:
-        """The job of that id. Raises NotFoundError."""
-        return Job(self._connection, self._get(f"/v1/jobs/{quote(id, safe='')}"))
+        """The job of that id, whichever program submitted it. Raises NotFoundError."""
+        return Job(self._connection, self._connection.run(operations.looked_at(self._server, id)))
 
     def jobs(
         self,
         *,
-        state: str | None = None,
+        state: JobState | None = None,
         analysis: str | None = None,
         label: tuple[str, str] | None = None,
         limit: int | None = None,
     ) -> Iterator[Job]:
         """Your jobs, newest first, page by page; ``limit`` bounds their number."""
-        filters = {"state": state, "analysis": analysis, "label": "=".join(label) if label else None}
-        params: dict[str, Any] = {name: value for name, value in filters.items() if value is not None}
-        left = limit
-        while left is None or left > 0:
-            params["limit"] = PAGE if left is None else min(PAGE, left)
-            page = self._get("/v1/jobs", params)
-            for record in page["items"][:left]:
+        page = operations.first_page(state, analysis, label, limit)
+        while page is not None:
+            records, page = self._connection.run(operations.page_of_jobs(self._server, page))
+            for record in records:
                 yield Job(self._connection, record)
-            left = None if left is None else left - len(page["items"])
-            params["cursor"] = page.get("next_cursor")
-            if params["cursor"] is None:
-                return
 
-    def kinetostatic_stream(self, robot: Any, **choices: Any) -> KinetostaticStream:
+    def kinetostatic_stream(
+        self,
+        robot: str | Mapping[str, object],
+        *,
+        field: Mapping[str, object] | None = None,
+        input: Literal["configuration", "pose"] | None = None,
+        base: str | None = None,
+        tip: str | None = None,
+        start: Sequence[float] | None = None,
+        cues: Mapping[str, object] | None = None,
+        stale_after_s: float | None = None,
+        rise_s: float | None = None,
+    ) -> KinetostaticStream:
         """A live stream of a robot's limits and conditioning as forces; a context manager (extra ``stream``).
 
-        ``robot`` is the name of a library robot or its part of a job document; ``choices`` are the other fields of the
-        message ``open``: field (which forces, as in `wsrender.force_field`), input ("configuration" or "pose"), base,
-        tip, start, cues, stale_after_s, rise_s. Raises what the server refuses: DocumentError, ModelError,
-        AccessError, QuotaError; MissingExtraError without the package websockets.
+        ``robot`` is the name of a library robot or its part of a job document. ``field`` says which forces, as in
+        `wsrender.force_field`, ``input`` what samples hold, ``start`` the configuration [rad or m] from which the first
+        pose is solved, ``cues`` what is felt besides the force; after ``stale_after_s`` of silence [s] the force is
+        zero, and rises again in ``rise_s`` [s]. Raises what the server refuses: DocumentError, ModelError, AccessError,
+        QuotaError; MissingExtraError without the package websockets.
         """
-        document = self._document({"robot": {"library": robot} if isinstance(robot, str) else robot, **choices})
-        return KinetostaticStream(self._url, self._token, document, self._timeout_s)
-
-    def _get(self, path: str, params: dict[str, Any] | None = None) -> Any:
-        return self._connection.request("GET", path, params=params or {}).json()
-
-    def _document(self, job: Any) -> dict[str, Any]:
-        if not isinstance(job, Mapping) and not hasattr(job, "model_dump"):
-            raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
-        document = _plain(self._with_uploads(job) if isinstance(job, Mapping) else job)
-        for name in FILED:
-            if isinstance(document.get(name), str):
-                document[name] = {"path": document[name]}
-        for path, robot in models_in(document):
-            if isinstance(robot.get("path"), str):
-                field = dotted(path, "path")
-                model = _expanded(robot, field)
-                robot["model"] = self.upload_model(robot["path"] if model is None else model, field)
-                for name in ("path", "packages", "xacro"):
-                    robot.pop(name, None)
-        return document
-
-    def _with_uploads(self, job: Mapping[str, Any]) -> dict[str, Any]:
-        """The document with long arrays of configurations and points uploaded."""
-        document = dict(job)
-        if content := _long_array(document.get("configurations")):
-            document["configurations"] = {"model": self.upload_model(content, "configurations")}
-        for name in OF_POINTS:
-            points = document.get(name)
-            if (
-                isinstance(points, Mapping)
-                and points.keys() == {"points"}
-                and (content := _long_array(points["points"]))
-            ):
-                document[name] = {"model": self.upload_model(content, dotted((name,), "points"))}
-        return document
-
-
-def _long_array(value: Any) -> bytes | None:
-    """The .npy file of a NumPy array that is too long for a document; None of anything else, which is sent as it is."""
-    import numpy as np
-
-    if not isinstance(value, np.ndarray) or value.size <= LONGEST_SENT or value.ndim != 2:
-        return None
-    if value.dtype.kind not in "fiu" or value.dtype.itemsize > 8 or not np.isfinite(value).all():
-        return None  # what is wrong with it is told by its place
-    file = BytesIO()
-    np.save(file, value, allow_pickle=False)
-    return file.getvalue()
-
-
-def _plain(document: Any) -> Any:
-    """The document as JSON has it, NumPy's numbers and arrays written out. Raises DocumentError naming the field."""
-
-    def plain(value: Any, *path: str | int) -> Any:
-        if hasattr(value, "tolist"):
-            value = value.tolist()
-        elif hasattr(value, "model_dump"):
-            value = value.model_dump(mode="json")
-        elif isinstance(value, Path):
-            value = str(value)
-        if isinstance(value, Mapping):
-            return {key: plain(each, *path, str(key)) for key, each in value.items()}
-        if isinstance(value, list | tuple):
-            return [plain(each, *path, k) for k, each in enumerate(value)]
-        if isinstance(value, float) and not math.isfinite(value):
-            raise DocumentError([(path_text(*path), f"must be a finite number, not {value}")])
-        if value is None or isinstance(value, str | int | float):
-            return value
-        raise DocumentError(
-            [(path_text(*path), f"must be plain data, not {type(value).__name__}: a server runs no code")]
+        chosen = {"field": field, "input": input, "base": base, "tip": tip, "start": start, "cues": cues}
+        steps = operations.stream_document(
+            self._server, robot, {**chosen, "stale_after_s": stale_after_s, "rise_s": rise_s}
         )
-
-    return plain(document)
-
-
-def _items(answer: Any) -> list[dict[str, Any]]:
-    return answer["items"]
-
-
-def _expanded(robot: Mapping[str, Any], field: str) -> bytes | None:
-    """The URDF of a xacro file, which a server does not expand; None of another file."""
-    path = Path(robot["path"])
-    if path.suffix.lower() != ".xacro" and not robot.get("xacro"):
-        return None
-    from wsrender.robots import xacro_files
-
-    return xacro_files.expanded(path, robot.get("xacro") or {}, robot.get("packages") or {}, field)
-
-
-def _media_type(model: str | Path | bytes, content: bytes) -> str:
-    if content[:2] == ZIP:
-        return "application/zip"
-    ending = Path(model).suffix.lower() if not isinstance(model, bytes) else ".npy" if model[:6] == NPY else ""
-    return (MEDIA_TYPES | TABLE_TYPES).get(ending, "application/xml")
-
-
-def _read(path: Path, field: str) -> bytes:
-    if path.is_dir():
-        from wsrender.robots import archives
-
-        return archives.of_folder(path, field)
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(field, f"{path} cannot be read: {error.strerror}") from None
+        return KinetostaticStream(self._server.url, self._token, self._connection.run(steps), self._server.timeout_s)

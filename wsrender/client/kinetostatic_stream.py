@@ -2,14 +2,15 @@
 
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from wsrender.client.connection import error_of_problem
+from wsrender.client.problems import error_of_problem
+from wsrender.client.stream_records import Force, Opened, Scale, Statistics
 from wsrender.errors import AccessError, MissingExtraError, QuotaError, ServerConnectionError, WaitTimeoutError
 
 if TYPE_CHECKING:
@@ -27,19 +28,19 @@ class KinetostaticStream:
     ``statistics`` its last, after the block.
     """
 
-    def __init__(self, url: str, token: str | None, document: dict[str, Any], timeout_s: float):
+    def __init__(self, url: str, token: str | None, document: Mapping[str, object], timeout_s: float):
         self._url = url.rstrip("/").replace("http", "ws", 1) + PATH
         self._headers = {"Authorization": f"Bearer {token}"} if token else {}
         self._open = {"type": "open", **document}
         self._timeout_s = max(timeout_s, 30.0)  # for a process that starts
-        self._patience_s = float(document.get("stale_after_s", STALE_AFTER_S))
+        self._patience_s = float(cast(float, document.get("stale_after_s", STALE_AFTER_S)))
         self._connection = ExitStack()
         self._socket: ClientConnection | None = None
         self._sequence = 0
         self._received_at = -np.inf
-        self.opened: dict[str, Any] = {}
-        self.statistics: dict[str, Any] = {}
-        self.last: dict[str, Any] = {}
+        self.opened = cast(Opened, {})
+        self.statistics = cast(Statistics, {})
+        self.last = cast(Force, {})
         """The newest message ``force``, or empty."""
 
     def __repr__(self) -> str:
@@ -53,7 +54,7 @@ class KinetostaticStream:
         self._socket = self._connected()
         try:
             self._send(self._open)
-            self.opened = self._next("opened", self._timeout_s)
+            self.opened = cast(Opened, self._next("opened", self._timeout_s))
         except BaseException:
             self._connection.close()
             raise
@@ -65,7 +66,7 @@ class KinetostaticStream:
         try:
             if kind is None:
                 self._send({"type": "close"})
-                self.statistics = self._next("closed", 5.0)
+                self.statistics = cast(Statistics, self._next("closed", 5.0))
         except (ServerConnectionError, WaitTimeoutError):
             pass  # the session ends with its connection, too
         finally:
@@ -77,7 +78,7 @@ class KinetostaticStream:
         *,
         position_m: Sequence[float] | np.ndarray | None = None,
         quat_wxyz: Sequence[float] | np.ndarray | None = None,
-        scale: str = "medium",
+        scale: Scale = "medium",
         clutch: bool = False,
     ) -> int:
         """Say where the device is: a configuration, or its pose; the number of this sample.
@@ -91,16 +92,25 @@ class KinetostaticStream:
         self._send(sample)
         return self._sequence
 
-    def receive(self, timeout_s: float | None = None) -> dict[str, Any]:
+    def receive(self, timeout_s: float | None = None) -> Force:
         """The next message ``force``, with all its fields; WaitTimeoutError where none comes in time.
 
         Raises ServerConnectionError where the connection is lost, and what a ``fault`` of the server stands for.
         """
-        return self._next("force", timeout_s)
+        return cast(Force, self._next("force", timeout_s))
 
-    def exchange(self, *args: Any, timeout_s: float = 1.0, **sample: Any) -> dict[str, Any]:
-        """``send``, and the first force that answers this sample."""
-        sequence = self.send(*args, **sample)
+    def exchange(
+        self,
+        configuration: Sequence[float] | np.ndarray | None = None,
+        *,
+        position_m: Sequence[float] | np.ndarray | None = None,
+        quat_wxyz: Sequence[float] | np.ndarray | None = None,
+        scale: Scale = "medium",
+        clutch: bool = False,
+        timeout_s: float = 1.0,
+    ) -> Force:
+        """``send``, and the first force that answers this sample; WaitTimeoutError where none comes in time."""
+        sequence = self.send(configuration, position_m=position_m, quat_wxyz=quat_wxyz, scale=scale, clutch=clutch)
         end = time.monotonic() + timeout_s
         while True:
             message = self.receive(max(end - time.monotonic(), 0.0))
@@ -118,10 +128,10 @@ class KinetostaticStream:
             fresh = False
         return np.array(self.last["force_n"]) if fresh and self.last else np.zeros(3)
 
-    def ask_statistics(self, timeout_s: float = 5.0) -> dict[str, Any]:
+    def ask_statistics(self, timeout_s: float = 5.0) -> Statistics:
         """How well the loop keeps its time."""
         self._send({"type": "statistics"})
-        return self._next("statistics", timeout_s)
+        return cast(Statistics, self._next("statistics", timeout_s))
 
     def _connected(self) -> "ClientConnection":
         try:

@@ -1,8 +1,8 @@
 """Results as objects of other libraries: pandas, xarray, PyVista and trimesh, with their names, units and frames."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 AXES = ("x", "y", "z")
 VECTOR = "component"  # the axis of a vector's parts
+TAKEN = ("count", *AXES, VECTOR)  # names that no index's array has
 
 
 def data_frame(data: DistributionMap | Table, document: Mapping[str, Any]) -> "pandas.DataFrame":
     """The columns as in the Parquet files; ``attrs["units"]`` has the unit of each, "1" where it has none."""
-    pandas, columns = _library("pandas", "data"), columns_of(data)
+    pandas, columns = required("pandas", "data"), columns_of(data)
     frame = pandas.DataFrame(arrays_by_column(data, columns))
     place = "world" if isinstance(data, DistributionMap) else data.grid.frame if data.grid else None
     frame.attrs = _about(document, place) | {"units": columns.column_units()}
@@ -41,25 +42,42 @@ def dataset(data: VolumeData | Table, document: Mapping[str, Any]) -> "xarray.Da
 
 
 def _dataset_of_voxels(volume: VolumeData, document: Mapping[str, Any]) -> "xarray.Dataset":
-    """Arrays over the centres of the voxels x, y, z [m]."""
-    library, taken = _library("xarray", "data"), {"count", *AXES, VECTOR}
+    taken = {*TAKEN}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     units = cell_units(volume, names, vectors)
-    words = {name: said(*key) for key, name in names.items()} | {name: said(key) for key, name in vectors.items()}
-    arrays = {}
-    for name, values in cell_arrays(volume, names, vectors):
+    words = {name: key for key, name in names.items()} | {name: (key,) for key, name in vectors.items()}
+    arrays = {
+        name: VoxelArray(values, units[name], words.get(name, ("samples",)))
+        for name, values in cell_arrays(volume, names, vectors)
+    }
+    return voxel_dataset(arrays, [volume.centers(k) for k in range(3)], float(volume.voxel_size_m), document)
+
+
+class VoxelArray(NamedTuple):
+    """Values of voxels, (nx, ny, nz) or (nx, ny, nz, 3) along the axes of the world; their unit, and words for them."""
+
+    values: Any
+    unit: str
+    words: tuple[str, ...]
+
+
+def voxel_dataset(
+    arrays: Mapping[str, VoxelArray], centers: Sequence[np.ndarray], voxel_size_m: float, document: Mapping[str, Any]
+) -> "xarray.Dataset":
+    """Arrays over the centres of the voxels x, y, z [m]; values may be what xarray reads later."""
+    xarray, variables = required("xarray", "data"), {}
+    for name, (values, unit, words) in arrays.items():
         axes = (*AXES, VECTOR) if values.ndim == 4 else AXES
-        arrays[name] = (axes, values, {"units": units[name], "long_name": words.get(name, said("samples"))})
-    centers: dict[str, Any] = {axis: _axis(axis, volume.centers(k), "m") for k, axis in enumerate(AXES)}
-    if vectors:
-        centers[VECTOR] = (VECTOR, list(AXES), {"long_name": "Component along the axes of the world"})
-    about = _about(document, "world") | {"voxel_size_m": float(volume.voxel_size_m)}
-    return library.Dataset(arrays, centers, about)
+        variables[name] = (axes, values, {"units": unit, "long_name": said(*words)})
+    coordinates: dict[str, Any] = {name: _axis(name, along, "m") for name, along in zip(AXES, centers, strict=True)}
+    if any(values.ndim == 4 for values, _, _ in arrays.values()):
+        coordinates[VECTOR] = (VECTOR, list(AXES), {"long_name": "Component along the axes of the world"})
+    return xarray.Dataset(variables, coordinates, _about(document, "world") | {"voxel_size_m": voxel_size_m})
 
 
 def _dataset_of_cells(table: Table, document: Mapping[str, Any]) -> "xarray.Dataset":
     """A table whose rows are cells, as arrays over the centres of these; columns of k numbers have one axis more."""
-    library, grid = _library("xarray", "data"), table.grid
+    library, grid = required("xarray", "data"), table.grid
     assert grid is not None
     arrays, coordinates = {}, {}
     for name, origin, step, size in zip(grid.axes, grid.origin, grid.step, grid.shape, strict=True):
@@ -75,7 +93,7 @@ def _dataset_of_cells(table: Table, document: Mapping[str, Any]) -> "xarray.Data
 
 def image_data(volume: VolumeData, document: Mapping[str, Any]) -> "pyvista.ImageData":
     """The voxels as the cells of an image [m, world frame]; ``user_dict["units"]`` has the unit of each array."""
-    library, taken = _library("pyvista", "render"), {"count"}
+    library, taken = required("pyvista", "render"), {"count"}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     image = library.ImageData(
         dimensions=np.add(volume.shape, 1), spacing=(volume.voxel_size_m,) * 3, origin=volume.origin_m
@@ -88,7 +106,7 @@ def image_data(volume: VolumeData, document: Mapping[str, Any]) -> "pyvista.Imag
 
 def poly_data(mesh: "trimesh.Trimesh", document: Mapping[str, Any]) -> "pyvista.PolyData":
     """A mesh [m, world frame]."""
-    surface = _library("pyvista", "render").PolyData.from_regular_faces(np.asarray(mesh.vertices), mesh.faces)
+    surface = required("pyvista", "render").PolyData.from_regular_faces(np.asarray(mesh.vertices), mesh.faces)
     surface.user_dict = _about(document, "world") | {"units": {"points": "m"}}
     return surface
 
@@ -115,7 +133,8 @@ def _about(document: Mapping[str, Any], frame: str | None) -> dict[str, Any]:
     return about | ({"frame": frame} if frame else {})
 
 
-def _library(name: str, extra: str) -> Any:
+def required(name: str, extra: str) -> Any:
+    """A module of another package. Raises MissingExtraError, naming the extra, where it is not installed."""
     try:
         return import_module(name)
     except ModuleNotFoundError as error:

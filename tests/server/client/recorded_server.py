@@ -5,8 +5,10 @@ from pathlib import Path
 
 import httpx2
 
+import wsrender as ws
 
-class Lost(httpx2.SyncByteStream):
+
+class Lost(httpx2.SyncByteStream, httpx2.AsyncByteStream):
     """A body that ends with a lost connection."""
 
     def __init__(self, sent: bytes):
@@ -16,13 +18,17 @@ class Lost(httpx2.SyncByteStream):
         yield self.sent
         raise httpx2.ReadError("connection reset by peer")
 
+    async def __aiter__(self):
+        for piece in self:
+            yield piece
 
-class RecordedServer(httpx2.BaseTransport):
+
+class RecordedServer(httpx2.BaseTransport, httpx2.AsyncBaseTransport):
     """Answers by (method, path), one after another, the last one for ever; exceptions are raised."""
 
     def __init__(self):
         self.requests = []
-        self._answers = {}
+        self._answers = {("GET", "/v1/version"): [says({"wsrender": ws.__version__})]}
 
     def answer(self, method, path, *answers):
         self._answers[method, path] = list(answers)
@@ -34,12 +40,15 @@ class RecordedServer(httpx2.BaseTransport):
         answer = answers.pop(0) if len(answers) > 1 else answers[0]
         if callable(answer):
             answer = answer(request)
-        if isinstance(answer, Exception):
+        if isinstance(answer, BaseException):
             raise answer
         # A Response can be sent only once, and one made of bytes has been read already.
         status, headers, body = answer
         stream = httpx2.ByteStream(body) if isinstance(body, bytes) else body
         return httpx2.Response(status, headers=headers, stream=stream)
+
+    async def handle_async_request(self, request):
+        return self.handle_request(request)
 
     def sent(self, method, path):
         return [r for r in self.requests if (r.method, r.url.path) == (method, path)]

@@ -68,7 +68,7 @@ def test_lost_answer_is_asked_again_with_the_same_key(server, client):
     busy = refuses(409, "idempotency_key_in_flight", retryable=True, headers={"Retry-After": "1"})
     server.answer("POST", "/v1/jobs", LOST, REFUSED, busy, says(JOB, 202))
     server.answer("GET", "/v1/jobs/j1", says(JOB))
-    client._connection._reached = True
+    client._connection.server.reached = True
     assert client.submit(DOCUMENT).id == "j1"
     keys = {request.headers["Idempotency-Key"] for request in server.requests}
     assert (len(server.requests), len(keys)) == (4, 1)
@@ -245,7 +245,7 @@ def test_tables_of_targets_are_uploaded(given, server, client, tmp_path):
 
 def test_long_arrays_are_uploaded(server, client, monkeypatch):
     """Those of NumPy, in the fields that may be files; short ones, lists and what is no number stay in the document."""
-    monkeypatch.setattr("wsrender.client.client.LONGEST_SENT", 11)
+    monkeypatch.setattr("wsrender.client.documents.LONGEST_SENT", 11)
     rows = np.arange(12.0).reshape(4, 3)
     server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201))
     server.answer("POST", "/v1/jobs", says(JOB, 202))
@@ -301,7 +301,7 @@ def test_wrong_address():
 
 def test_folders_travel_as_zips_and_xacro_expanded(server, client, tmp_path):
     server.answer("POST", "/v1/models", *(says({"sha256": each * 32}, 201) for each in ("ab", "cd", "ef")))
-    server.answer("POST", "/v1/jobs:validate", says({}))
+    server.answer("POST", "/v1/jobs:validate", says({"valid": True}))
     (tmp_path / "arm").mkdir()
     (tmp_path / "arm" / "a.xml").write_text("<mujoco/>")
     (tmp_path / "arm.zip").write_bytes(archives.of_folder(tmp_path / "arm", "path"))

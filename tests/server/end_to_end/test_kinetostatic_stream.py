@@ -223,8 +223,8 @@ def test_messages_are_counted_by_the_second():
         ({"robot": "nobody"}, ws.InputError, "robot.library"),
         ({"robot": {"path": "arm.urdf"}}, ws.InputError, "arm.urdf cannot be read"),
         ({"robot": ROBOT, "field": {"form": "soft"}}, ws.DocumentError, "field.form"),
-        ({"robot": ROBOT, "inputs": "pose"}, ws.DocumentError, "did you mean input"),
-        ({"robot": ROBOT, "version": 2}, ws.DocumentError, "version"),
+        ({"robot": ROBOT, "inputs": "pose"}, TypeError, "did you mean input"),
+        ({"robot": ROBOT, "cues": {"viscosity": 2}}, ws.DocumentError, "cues.viscosity"),
         ({"robot": ROBOT, "input": "pose", "start": [0, 0]}, ws.InputError, "has shape"),
     ],
 )
