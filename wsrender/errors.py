@@ -20,6 +20,13 @@
     │   └── JobFailedError             a job ended without a result: failed, canceled, timed out
     ├── ServerConnectionError (ConnectionError) a server cannot be reached, or was lost for too long
     └── WaitTimeoutError (TimeoutError) a job has not finished in the time that its caller would wait
+
+>>> arm = ws.load_robot("ur5e")
+>>> try:
+...     arm.forward_kinematics([0.0, 0.5])
+... except ws.InputError as error:
+...     print(error.field, "|", error.message)
+q | has shape (2,); (6,) or (N, 6) is needed
 """
 
 from collections.abc import Iterable

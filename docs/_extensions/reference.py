@@ -43,7 +43,8 @@ def _python() -> Iterator[str]:
         elif inspect.isclass(value):
             error, document = issubclass(value, BaseException), type(value) is not type
             groups[_ERRORS if error else _DOCUMENTS if document else _CLASSES].append(name)
-    yield "# Python\n\n`import wsrender as ws`. Lengths are in metres, angles in radians, quaternions w, x, y, z.\n"
+    yield "# Python\n\n`import wsrender as ws`; in examples `np` is NumPy. "
+    yield "Lengths are in metres, angles in radians, quaternions w, x, y, z.\n"
     for title, names in groups.items():
         yield f"## {title}\n"
         for name in names:
@@ -51,6 +52,13 @@ def _python() -> Iterator[str]:
             yield f"### {name}\n\n```python\n{_called(name, value)}\n```\n\n{_told(value)}\n"
             if inspect.isclass(value):
                 yield from _members(value)
+    yield "## Modules\n"
+    for module in (wsrender.errors, wsrender.math, wsrender.run):
+        name = module.__name__.rpartition(".")[2]
+        yield f"### {name}\n\n{_told(module)}\n"
+        for each in getattr(module, "__all__", ()):  # errors stand above
+            called = _called(f"{name}.{each}", getattr(module, each))
+            yield f"`{' '.join(called.split())}`\n: " + _told(getattr(module, each)).replace("\n", "\n  ") + "\n"
 
 
 def _called(name: str, value: Any) -> str:
@@ -77,10 +85,15 @@ def _type(annotation: Any) -> str:
 
 
 def _told(value: Any) -> str:
-    """A docstring as Markdown: its items on ``names`` as a list."""
-    text = inspect.getdoc(value) or ""
-    paragraphs = re.sub(r"^(?=``\w+``:)", "- ", text, flags=re.MULTILINE)
-    return _safe(re.sub(r"``([^`]+)``", r"`\1`", paragraphs))
+    """A docstring as Markdown: its items on ``names`` as a list, its examples and what is drawn in it as they are."""
+    return "\n\n".join(_paragraph(each) for each in (inspect.getdoc(value) or "").split("\n\n") if each != "::")
+
+
+def _paragraph(text: str) -> str:
+    if text.startswith((">>> ", "    ")):
+        return f"```{'pycon' if text[0] == '>' else 'text'}\n{inspect.cleandoc(text)}\n```"
+    items = re.sub(r"^(?=``\w+``:)", "- ", text, flags=re.MULTILINE)
+    return _safe(re.sub(r"``([^`]+)``", r"`\1`", items))
 
 
 def _safe(text: str) -> str:

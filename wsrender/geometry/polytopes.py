@@ -118,6 +118,13 @@ def polytope(
     Limits are those of the model, or `load_robot`'s. ``task``: rows of the Jacobian in base axes, of which the linear
     ones count. Forces are held at rest, moment 0, and cut to ± ``limit_N`` along the axes of the base. Raises
     InputError for limits that the robot lacks, MissingInertiaError, ModelError.
+
+    >>> rows = [{"a": 0.3, "limits_deg": [-180, 180]}, {"a": 0.2, "limits_deg": [-180, 180]}]
+    >>> speeds = {"joint1": 1.0, "joint2": 1.0}
+    >>> arm = ws.load_robot(ws.DHTable(convention="standard", rows=rows), velocity_limits=speeds)
+    >>> found = ws.polytope(arm, [0, np.pi / 2], "velocity", task=["x", "y"])
+    >>> sorted(found.vertices[:, :2].round(9).tolist())  # ± the columns of the Jacobian
+    [[-0.4, 0.3], [0.0, -0.3], [0.0, 0.3], [0.4, -0.3]]
     """
     subject = as_robot(robot)
     rows = configuration_rows(q, subject.chain.n)

@@ -184,6 +184,12 @@ def register_index(
     The other arguments are those of `Index`. Registered so, an index is known to this process;
     the entry-point group ``wsrender.indices`` adds those of an installed package to all. Raises InputError where the
     name is not an identifier or taken, the function uses anything else, or another field is not allowed.
+
+    >>> ws.register_index("spread", lambda sigma, m, n: sigma[0] - sigma[-1], unit="m").name
+    'spread'
+    >>> found = ws.evaluate_indices("ur5e", [0, -1.5, 1.5, 0, 1, 0], ["spread", "minimum_singular_value"])
+    >>> found["spread"].shape
+    (1,)
     """
     index = Index(
         name, symbol or name, function, source, range, unit, tuple(needs), bound, tuple(options),

@@ -1,6 +1,11 @@
 """The functions that an index may use, besides arithmetic: on NumPy arrays and, traced, in the kernels.
 
 Every function takes numbers, arrays or `Expression`s; an Expression results where an argument is one.
+
+>>> x = np.array([0.25, 4.0])
+>>> ws.math.where(ws.math.greater(x, 1.0), ws.math.sqrt(x), 0.0).tolist()
+[0.0, 2.0]
+>>> index = ws.register_index("anisotropy", lambda sigma, m, n: ws.math.log(sigma[0] / sigma[-1]), unit="1")
 """
 
 from typing import Any

@@ -257,6 +257,12 @@ def force_field(robot: Any, *, device: str = "auto", threads: int | None = None,
     The form "normalised" does net work on closed paths. "potential" does none as long as its force is below the
     device's peak, no singular posture is near, and the joints of a redundant arm come back without moving by
     themselves; else at most peak × length of the path. Raises DocumentError, InputError, ModelError.
+
+    >>> field = ws.force_field("phantom_omni")
+    >>> field
+    <ForceField phantom_omni: potential, force>
+    >>> field.evaluate([0.0, 0.5, 0.0, 0.0, 0.0, 0.0]).force.shape
+    (3,)
     """
     return ForceField(as_robot(robot), ForceFieldChoice(**choices), device, threads=threads)
 

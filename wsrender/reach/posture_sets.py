@@ -359,6 +359,10 @@ def postures(
     points of self-motions [rad or reaches].
 
     Raises InputError, DocumentError, ModelError.
+
+    >>> held = ws.postures("ur5e", [0.4, 0.2, 0.3], [0, 1, 0, 0])
+    >>> held.configurations.shape, held.complete.tolist()
+    ((8, 6), [True])
     """
     subject = as_robot(robot)
     T = poses_of(position_m, quat_wxyz)

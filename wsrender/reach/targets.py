@@ -93,6 +93,10 @@ def reachable(
     of `wsrender.robot.constraints.constraints_for`, which must admit the configurations.
 
     Raises InputError, ModelError.
+
+    >>> found = ws.reachable("ur5e", [[0.4, 0.2, 0.3], [1.5, 0.0, 0.0]])
+    >>> found.labels.tolist(), found.reasons.tolist()
+    (['reachable', 'unreachable'], ['', 'out of reach'])
     """
     subject = as_robot(robot)
     tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)
@@ -132,6 +136,9 @@ def reachable_labels(
     leaves open is searched as there. Contiguous arrays of float64 are read where they are.
 
     Raises InputError, ModelError.
+
+    >>> ws.reachable_labels("ur5e", [[0.4, 0.2, 0.3], [1.5, 0.0, 0.0]]).tolist()
+    [1, 0]
     """
     chain, kind = as_robot(robot).chain, "position" if orientations is None else "pose"
     tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)

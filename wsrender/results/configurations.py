@@ -30,6 +30,10 @@ def configuration_of(result: "Result", number: int, robot: Any = None) -> np.nda
 
     Any sample of any method has one, admitted or not. ``robot`` is that of the result, for one that is a Python class.
     Raises InputError for a number that is none of the result's, and for another analysis; ModelError.
+
+    >>> result = ws.analyze("scara", ws.Grid(4), task=["x", "y"], refined_volume=None)
+    >>> ws.configuration_of(result, 0).round(3).tolist()  # the first of the grid: all lower limits
+    [-0.785, 0.785, 0.2, -3.142]
     """
     job = result.document.get("job") or {}
     if result.document.get("analysis") != "workspace" or "sampling" not in job:

@@ -124,6 +124,15 @@ def register_picture(row: Picture) -> Picture:
 
     It replaces one that was registered before under the same name. Raises InputError, naming the member, where the row
     is not allowed, or its name is one of wsrender's own.
+
+    >>> def heights(plot):
+    ...     from matplotlib.figure import Figure
+    ...
+    ...     figure = Figure()
+    ...     figure.subplots().hist(plot.samples.position[:, 2])
+    ...     return figure
+    >>> ws.register_picture(ws.Picture("heights", heights, needs=("samples",))).name
+    'heights'
     """
     _check(row)
     _REGISTERED[row.name] = row

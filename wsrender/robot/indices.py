@@ -61,6 +61,12 @@ def evaluate_indices(
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. The other arguments are those of the job
     document ``indices_at``; ``threads`` change no bit. Raises InputError, ModelError, MissingInertiaError.
+
+    >>> rows = [{"a": 0.3, "limits_deg": [-180, 180]}, {"a": 0.2, "limits_deg": [-180, 180]}]
+    >>> arm = ws.DHTable(convention="standard", rows=rows)
+    >>> found = ws.evaluate_indices(arm, [[0, np.pi / 2], [0, 0]], ["manipulability"], task=["x", "y"])
+    >>> found["manipulability"].round(9).tolist()  # 0.3 m · 0.2 m · sin q2
+    [0.06, 0.0]
     """
     from wsrender.engine import evaluate_samples
 

@@ -52,6 +52,14 @@ class Robot:
 
     Positions are in the world frame [m]; a configuration ``q`` has shape (n,) or (N, n), in radians and
     metres, in the order of ``joint_names``; results always have the leading axis N (1 for a single one).
+
+    >>> rows = [{"a": 0.3, "limits_deg": [-180, 180]}, {"a": 0.2, "limits_deg": [-180, 180]}]
+    >>> arm = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    >>> q = [0, np.pi / 2]  # the forearm at a right angle
+    >>> arm.forward_kinematics(q)[0, :3, 3].round(9).tolist()
+    [0.3, 0.2, 0.0]
+    >>> arm.jacobian(q)[0, :2].round(9).tolist()
+    [[-0.2, -0.2], [0.3, 0.0]]
     """
 
     def __init__(
@@ -364,6 +372,13 @@ def load_robot(
     `MountJoint` or its fields, from the ground up. What is odd about a model is a ModelWarning, and among the robot's
     ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
+
+    >>> ws.load_robot("ur5e")
+    <Robot ur5e: 6 joints, world to tool>
+    >>> rows = [{"a": 0.3, "limits_deg": [-90, 90]}, {"a": 0.2, "limits_deg": [-180, 180]}]
+    >>> arm = ws.load_robot(ws.DHTable(convention="standard", rows=rows), limits={"joint1": (0.0, 1.0)})
+    >>> arm.upper_limits.round(3).tolist()
+    [1.0, 3.142]
     """
     source, xacro, packages = named_models.resolved(source, xacro, packages)
     kind, value = described(source)

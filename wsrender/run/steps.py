@@ -121,6 +121,11 @@ def execute(
 
     ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default:
     the variable WSRENDER_THREADS, else all cores) and ``chunk_size`` change no bit of the result.
+
+    >>> pose = {"position_m": [0.4, 0.2, 0.3], "quat_wxyz": [0, 1, 0, 0]}
+    >>> result = ws.execute({"analysis": "postures", "robot": {"library": "ur5e"}, **pose})
+    >>> result.document["postures"]["postures"]
+    8
     """
     with _interruptible(progress) as told:
         started = time.perf_counter()

@@ -263,5 +263,12 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
+
+    >>> rows = [{"a": 0.3, "limits_deg": [-180, 180]}, {"a": 0.2, "limits_deg": [-180, 180]}]
+    >>> boundary = ws.exact_boundary(ws.DHTable(convention="standard", rows=rows))
+    >>> round(boundary.area / np.pi, 9)  # a ring of radii 0.1 and 0.5 m: π (0.25 − 0.01)
+    0.24
+    >>> boundary.contains([[0.05, 0.0], [0.3, 0.0]]).tolist()
+    [False, True]
     """
     return ExactBoundary.of(held_chain(model_chain(robot), locked or {}))

@@ -27,6 +27,10 @@ class FiveBar:
     C = A + L1 u(θ1), D = B + L1' u(θ2), P = C + L2 u(θ3) = D + L2' u(θ4) with u(θ) = (cos θ, sin θ); all angles are
     absolute [rad]. ``limits_rad`` bound θ1 and θ2, each [low, high] of at most a turn, or None: it turns freely.
     Raises InputError, naming the field, for lengths that are not positive and limits out of order.
+
+    >>> mechanism = ws.FiveBar(base_m=0.2, proximal_m=(0.2, 0.2), distal_m=(0.3, 0.3))
+    >>> mechanism.forward_kinematics([np.pi / 2, np.pi / 2], "+").round(4).tolist()  # y: 0.2 + (0.3² − 0.1²)^½
+    [[0.1, 0.4828]]
     """
 
     base_m: float

@@ -46,6 +46,12 @@ def register_constraint(
 
     ``on_host``: the function is any, ``function(q, poses, **options)`` of configurations (N, n) [rad or m] and poses of
     the tip in the world (N, 4, 4) to (N,) bool, whether each is admitted; NumPy's pace, and of this process alone.
+
+    >>> ws.register_constraint("elbow_up", lambda q, position, axes, least=0.0: q[2] - least)
+    >>> elbow = {"elbow_up": {"least": 0.2}}
+    >>> result = ws.analyze("ur5e", ws.Sobol(4096), constraints=elbow, refined_volume=None)
+    >>> list(result.document["samples"]["rejected"])
+    ['elbow_up']
     """
     if isinstance(keeps, str) or not isinstance(keeps, Iterable):
         raise InputError("keeps", f"must be a set of {', '.join(STRUCTURES)}, not {keeps!r}")

@@ -142,6 +142,10 @@ def register_format(row: Format) -> Format:
 
     It replaces one that was registered before under the same suffix and kind. Raises InputError, naming the member,
     where the row is not allowed, or is one of wsrender's own.
+
+    >>> row = ws.Format("txt", "document", "text/plain", lambda data, path: path.write_text(str(data)))
+    >>> ws.register_format(row).suffix
+    'txt'
     """
     _check(row)
     _REGISTERED[row.kind, row.suffix] = row
