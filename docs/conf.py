@@ -20,6 +20,7 @@ copyright = f"{author}, Apache-2.0"
 version = release = __version__
 
 extensions = [
+    "citations",
     "mathml",
     "myst_parser",
     "reference",
@@ -29,6 +30,7 @@ extensions = [
 ]
 exclude_patterns = [
     "_extensions",
+    "_templates",
     "examples",
     "gallery",
     "generated/**/*.ipynb",
@@ -46,6 +48,7 @@ bibtex_bibfiles = ["references.bib"]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "wsrender"
+templates_path = ["_templates"]
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = html_show_sourcelink = False

@@ -1,13 +1,13 @@
 """The site is built without a warning, and its pages are whole in a real Chromium."""
 
 import re
-from types import ModuleType
 from urllib.parse import quote_plus, unquote, urldefrag, urljoin
 
 import pytest
 
 import wsrender as ws
 from tests.docs.site import SCRIPTS, build, chosen, serving
+from tests.viewer.axe import serious_faults
 from tests.viewer.written import launch
 from wsrender.analyses.registry import job_classes
 
@@ -57,9 +57,10 @@ def test_the_reference_has_all_that_there_is(folder):
     for name in job_classes():
         assert {name, name.replace("_", "-")} & anchors["jobs"] and {name, name.replace("_", "-")} & anchors["results"]
     for name in ws.__all__:
-        if isinstance(getattr(ws, name), str | ModuleType):
-            continue
-        assert f"<h3>{name}<" in shown["python"], name
+        assert isinstance(getattr(ws, name), str) or f"<h3>{name}<" in shown["python"], name
+    for name in ("<h3>errors<", "run.merge(", "math.sqrt("):
+        assert name in re.sub(r"</?span[^>]*>", "", shown["python"]), name
+    assert "highlight-pycon" in shown["python"]
     assert "skeleton(q" in shown["python"]
     for path in ("/v1/jobs", "/v1/jobs/{job_id}/volume/slice", "/v1/models/{sha256}"):
         assert path in shown["http"]
@@ -120,6 +121,20 @@ def test_pages_are_whole(browser, address, pages, width):
         assert (faults, missing, max(wider, 0)) == ([], [], 0), name
         page.close()
     context.close()
+
+
+@pytest.mark.parametrize(("width", "theme"), [(1280, "light"), (390, "dark")])
+def test_axe_finds_no_serious_fault(browser, address, pages, width, theme):
+    context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=theme)
+    context.set_default_timeout(PATIENCE_MS)
+    page, faults = context.new_page(), {}
+    for name in pages:
+        page.goto(address + name)
+        assert page.evaluate("document.documentElement.dataset.theme") == theme
+        if found := serious_faults(page):
+            faults[name] = found
+    context.close()
+    assert faults == {}
 
 
 def _is_foreign(url: str, address: str) -> bool:

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from tests.viewer.axe import serious_faults
 from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle
 from tests.viewer.written import decoded
-
-AXE = Path(__file__).parents[2] / "server/web/node_modules/axe-core/axe.min.js"
 
 
 @pytest.fixture(scope="module")
@@ -300,8 +299,6 @@ TABLET = {"color_scheme": "dark", "reduced_motion": "reduce", "viewport": {"widt
 @pytest.mark.parametrize("place", ["/jobs", "/new", "job"])
 @pytest.mark.parametrize("watched", [{"color_scheme": "light"}, TABLET], indirect=True)
 def test_axe_finds_no_serious_fault(watched: Watched, finished: str, place: str) -> None:
-    if not AXE.exists():
-        pytest.skip("needs axe-core: npm ci in server/web")
     page = watched.page
     if place == "job":
         opened(watched, f"/job/{finished}")
@@ -310,10 +307,7 @@ def test_axe_finds_no_serious_fault(watched: Watched, finished: str, place: str)
     else:
         page.goto(f"{watched.url}/#{place}")
         page.locator("table, .submit").first.wait_for()
-    page.evaluate(AXE.read_text() + ";0")
-    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-    serious = [each for each in found["violations"] if each["impact"] in ("serious", "critical")]
-    assert [(each["id"], [node["html"][:160] for node in each["nodes"][:4]]) for each in serious] == []
+    assert serious_faults(page) == []
 
 
 def test_names_are_text(watched: Watched, client: ws.Client) -> None:
