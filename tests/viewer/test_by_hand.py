@@ -15,7 +15,7 @@ import wsrender as ws
 from tests.server.hostile.cases import zipped
 from tests.server.http.test_view import read_message
 from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, tip, until
-from tests.viewer.written import decoded, looking
+from tests.viewer.written import WRITTEN, decoded, looking
 from wsrender.documents.robot import DHTable
 from wsrender.results.view.interactive import Interactive
 
@@ -95,6 +95,19 @@ def test_a_range_is_dragged_in_a_histogram_and_a_voxel_is_marked_there(watched: 
     marked = np.flatnonzero((red > 150) & (green < 140) & (blue < 90))
     at = (values["maximum:manipulability"] - first) / (last - first) * box["width"]
     assert len(marked) and np.abs(marked - at).max() <= 4
+
+
+def test_counts_beside_a_plot_are_whole(watched: Watched, client: ws.Client) -> None:
+    """Of so few samples that a bar counts one or two of them."""
+    few = {"sampling": {"method": "sobol", "count": 16}, "keep_map": True, "voxel_size_m": 0.3}
+    job = client.submit(JOB | few).wait()
+    watched.page.add_init_script(f"({WRITTEN})()")
+    opened(watched, f"/job/{job.id}")
+    watched.page.locator(".plot canvas").wait_for()
+    own = "written.filter(([canvas]) => canvas.closest('.plot')).map(([, text]) => text)"
+    written = set(watched.page.evaluate(own))
+    assert {"Samples", "0", "1"} <= written
+    assert written.isdisjoint({"0.2", "0.5", "1.5", "2.5"})
 
 
 def dropped(watched: Watched, field: Any, *files: tuple[str, bytes]) -> None:

@@ -1,6 +1,7 @@
 """What the page draws, pixel by pixel, against numbers that are computed here."""
 
 import base64
+import re
 from dataclasses import replace
 
 import matplotlib as mpl
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.viewer.written import HEIGHT, OFF, WIDTH, Written, at, decoded, launch, looking, manifest, pixels
+from tests.viewer.written import HEIGHT, OFF, WIDTH, WRITTEN, Written, at, decoded, launch, looking, manifest, pixels
 from wsrender.results.view import robot_view
 from wsrender.results.view.robots import chain_entry
 from wsrender.results.view.surfaces import ColoredMesh, glb
@@ -138,6 +139,27 @@ def test_slices_thresholds_and_cuts(views):
         places = (cells + FIRST + 0.5) * SIZE
         colors = at(views.picture(), pixels(places, TARGET, HALF))
         assert ((colors != 255).any(axis=1) == np.isfinite(values[:, j, k])).all()
+
+
+@pytest.mark.parametrize("most", [2, 3, 7, 13, 20, 1000])
+def test_the_bar_of_counts_has_whole_ticks(views, most):
+    """On the picture; in every range and width, linear and logarithmic, but where no whole number lies in it."""
+    values, written = np.resize(np.arange(1.0, most + 1), SHAPE), Written()
+    views.show(manifest(volumes=[written.volume("block", values, FIRST, SIZE, whole=True)]), written.blobs)
+    views.page.evaluate(WRITTEN)
+    views.change(theme="dark")
+    views.until("written.some(([, text]) => text === 'index [m]')")
+    texts = views.page.evaluate("written.map(([, text]) => text)")
+    numbers = {float(text) for text in texts if re.fullmatch(r"[\d.]+", text)}
+    assert numbers and all(number.is_integer() for number in numbers)
+    ticks = """([low, high, scale, count]) => page.scaleOf({label: "n", unit: "", whole: true}, [low, high], null,
+      {low, high, scale, clipped: false}, "viridis").ticks(count)"""
+    for low, high in ((1, most), (0, most), (-most, most), (0.5, most + 0.5), (most - 1, most)):
+        for scale in ("linear", "log"):
+            for count in (3, 5, 9):
+                found = np.array(views.page.evaluate(ticks, [low, high, scale, count]))
+                assert len(found) and (found == np.round(found)).all(), (low, high, scale, count, found)
+    assert views.page.evaluate(ticks, [1.2, 1.8, "linear", 5]) == [1.2, 1.8]
 
 
 @pytest.mark.parametrize("style", ["surface", "translucent", "isosurface", "cells", "points"])

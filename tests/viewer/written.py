@@ -53,6 +53,17 @@ class Written:
                 "exact": True}  # fmt: skip
 
 
+# Records what is written onto the page's canvases: [canvas, text] of each.
+WRITTEN = """() => {
+  const write = CanvasRenderingContext2D.prototype.fillText;
+  window.written = [];
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+    written.push([this.canvas, text]);
+    write.call(this, text, ...at);
+  };
+}"""
+
+
 def manifest(**parts):
     lists = "headline warnings robots skeletons volumes meshes points glyphs curves maps plots pictures omitted"
     empty = {name: [] for name in lists.split()}

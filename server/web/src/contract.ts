@@ -58,6 +58,7 @@ export interface Channel {
   data: Data; // one number a voxel, of `type`; uint8: 1 … 255 from minimum to maximum, 0 where there is none; float: NaN there
   categories?: { value: number; name: string; color: string }[]; // values that are names
   signed?: boolean; // colours by the distance from 0
+  whole?: boolean; // all values are whole numbers, such as counts: so are the ticks of their bar
 }
 
 export interface Volume {

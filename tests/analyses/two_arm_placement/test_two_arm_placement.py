@@ -64,7 +64,26 @@ def test_every_pair_of_placements(monkeypatch):
         assert table["weight_together"] == pytest.approx(either.max(axis=1 - axis))
         chosen = np.take_along_axis(either if axis == 0 else either.T, table["partner"][:, None], axis=1)[:, 0]
         assert chosen == pytest.approx(table["weight_together"])
-    assert result.plot.shares() is not None
+    assert len(bodies_of(result.plot.shares())) == 0
+
+
+def bodies_of(figure):
+    """Colours (3,) of the bodies that a picture shows, and which of its lines are no marks."""
+    shown = [np.asarray(image.get_array()) for image in figure.axes[0].get_images()]
+    return [picture[picture[..., 3] > 0][:, :3].mean(axis=0) for picture in shown]
+
+
+def test_arms_at_a_hand_over_are_drawn_as_bodies_in_their_colours():
+    """Blue and purple, as the targets that each serves; sticks of arms without bodies alone."""
+    over = {"first": {"x_m": -0.6}, "second": {"x_m": 0.6, "yaw_deg": 180}}
+    poses = {"points_m": [[0, 0, 0.5]], "orientations": 20, "second_in_first": {"rpy_deg": [180, 0, 0]}}
+    asked = {"analysis": "two_arm_placement", "points_m": [[0, 0, 0.4]], "hand_over": poses, "device": "cpu"}
+    sides = {side: {"robot": {"library": "ur5e"}, "over": place} for side, place in over.items()}
+    figure = execute(asked | sides).plot.shares()
+    first, second = bodies_of(figure)
+    assert first[2] > 1.5 * first[0] and second[0] > 1.1 * second[1]
+    said = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert said[-3:] == ["first arm, hand-over", "second arm, hand-over", "tip"]
 
 
 def test_pairs_that_serve_all_are_counted():

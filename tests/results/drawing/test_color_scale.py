@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from matplotlib.colors import BoundaryNorm
 
+from wsrender.analyses.base_placement.pictures import placement_map, trade_off
 from wsrender.results import drawing
 from wsrender.results.drawing.color_scale import color_scale
 from wsrender.results.drawing.style import new_figure
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Grid, Table
 from wsrender.volume.volume_data import VolumeData
 
 VALUES = np.random.default_rng(0).uniform(2.0, 3.0, 1000)
@@ -84,9 +86,40 @@ def test_counts_have_a_step_each(values):
         assert len(np.unique(bar.cmap(bar.norm(levels)), axis=0)) == len(levels)
 
 
-def test_many_counts_have_whole_ticks():
-    ticks = bar_of(np.arange(1.0, 18.0)).get_ticks()
+@pytest.mark.parametrize("most", [13, 17, 20, 25, 1000])
+@pytest.mark.parametrize("least", [0, 1, -30])
+def test_many_counts_have_whole_ticks(least, most):
+    """Those of differences among them, which have both signs."""
+    ticks = bar_of(np.arange(float(least), most + 1)).get_ticks()
     np.testing.assert_array_equal(ticks, np.round(ticks))
+    assert len(ticks) > 3
+
+
+@pytest.mark.parametrize("most", [1, 3, 12, 13, 20, 50])
+def test_the_axes_of_counts_have_whole_ticks(most):
+    """Of targets that placements serve, in a map and as a curve; of any table as a curve; of a histogram."""
+    x = np.linspace(-0.5, 0.5, 5)
+    counts = np.resize(np.arange(most + 1), 25)
+    counts[-1] = most
+    grid = Grid(("x_m", "y_m"), (-0.6, -0.6), (0.2, 0.2), (5, 5))
+    units = {"x_m": "m", "y_m": "m"}
+    whole = {"x_m": np.repeat(x, 5), "y_m": np.tile(x, 5), "served": counts}
+    row = {"x_m": np.linspace(-0.5, 0.5, 25), "served": counts}
+    line = Table(row, {"x_m": "m"}, grid=Grid(("x_m",), (-0.5,), (0.04,), (25,)))
+    samples = DistributionMap(np.zeros((25, 3)), {"postures": counts.astype(float)})
+    front = Table({"served": counts, "dexterity": np.arange(25.0)}, {"dexterity": "1"})
+    found = [
+        placement_map(Table(whole, units, grid=grid)).axes[-1].yaxis,
+        placement_map(line).axes[0].yaxis,
+        trade_off(front, {}, ["served", "dexterity"]).axes[0].xaxis,
+        drawing.curves(Table({"round": np.arange(25), "found": counts.astype(float)})).axes[0].yaxis,
+        drawing.histogram(samples).axes[0].xaxis,
+    ]
+    for axis in found:
+        low, high = axis.get_view_interval()
+        ticks = [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
+        np.testing.assert_array_equal(ticks, np.round(ticks))
+        assert ticks
 
 
 @pytest.mark.parametrize("value", [0.0, 0.25])

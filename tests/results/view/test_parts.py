@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from wsrender.analyses.reachability import pictures as of_reachability
+from wsrender.analyses.two_arm_placement import pictures as of_two_arms
 from wsrender.results.view.blobs import Blobs
 from wsrender.results.view.parts import add_maps, add_points
 from wsrender.volume.table import CellGrid, Table
@@ -26,6 +28,19 @@ def test_what_was_asked_for_leads_and_names_are_no_colours():
     assert names(add_points(Blobs(), None, {"targets": targets}, "float16", [])) == [
         ["label", "weight", "manipulability"]
     ]
+
+
+def test_labels_have_the_colours_of_the_pictures():
+    for marks in (of_reachability._MARKS, of_two_arms._MARKS):
+        label = np.array(list(marks))
+        (entry,) = add_points(
+            Blobs(), None, {"t": Table({"position": np.eye(5, 3), "label": np.resize(label, 5)})}, "float16", []
+        )
+        (shown,) = entry["channels"]
+        for each in shown["categories"]:
+            drawn = marks[each["name"].lower()]
+            assert each["color"] == drawn.get("mfc", drawn["mec"])
+        assert len({each["color"] for each in shown["categories"]}) == len(label)
 
 
 def test_maps_show_what_is_served_before_how_the_base_is_turned():

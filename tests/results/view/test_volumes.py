@@ -97,6 +97,14 @@ def test_a_channel_of_one_value(value):
     assert set(view.blobs["volume0.channel0.uint8"]) == {1}
 
 
+def test_counts_are_told_as_whole_numbers():
+    counts = np.array([np.nan, 1.0, 2.0, 7.0]).reshape(4, 1, 1)
+    statistics = {"number": {"robots": counts}, "mean": {"share": counts / 2, "of": np.full((4, 1, 1), 0.5)}}
+    _, entry = shown(VolumeData(0.1, (0, 0, 0), np.arange(1, 5).reshape(4, 1, 1), statistics))
+    whole = {channel["name"]: channel.get("whole") for channel in entry["channels"]}
+    assert whole == {"robots": True, "share": None, "of": None, "samples": True}
+
+
 def test_values_that_are_not_finite_are_none():
     values = np.array([np.inf, -np.inf, np.nan, 1.0, 2.0]).reshape(5, 1, 1)
     data = VolumeData(0.1, (0, 0, 0), np.ones((5, 1, 1), int), {"maximum": {"odd": values}})

@@ -27,6 +27,7 @@ from wsrender.results.drawing.cells import (
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import ROBOTS
 from wsrender.results.drawing.style import GREY, INK, Heading, color_map, new_figure, paper_style, quantity
+from wsrender.results.drawing.whole import whole_ticks
 from wsrender.volume.table import Table
 
 _SERVED = {"served": "Targets served", "weight": "Weight of the targets served"}
@@ -57,7 +58,7 @@ def placement_map(
     values = cells[name].reshape(grid.shape).astype(float)
     if len(grid.shape) == 1:
         figure, axes = curve(cells, name, _SERVED[name], best, _BEST, title)
-        _whole_numbers(axes, name)
+        axes.yaxis.set_major_locator(_ticks(name, 6))
         return figure
     below = bool(best) or targets is not None
     figure, axes = map_figure(cells, title, below)
@@ -79,13 +80,13 @@ def _served(figure: Figure, panels: list[Axes], values: list[np.ndarray], name: 
     shown = zip(panels, values, strict=True)
     image, *_ = [draw_map(axes, np.ma.masked_less_equal(each, 0), cells, cmap=colors, **limits) for axes, each in shown]
     bar = figure.colorbar(image, ax=panels, label=_SERVED[name])
-    if norm:
-        bar.set_ticks(np.arange(1, top + 1).tolist())
+    if name == "served":
+        bar.set_ticks(np.arange(1, top + 1).tolist() if norm else whole_ticks(_MOST_COLORS))
 
 
-def _whole_numbers(axes: Axes, name: str) -> None:
-    """Where targets are counted no part of one is written beside the curve."""
-    axes.yaxis.set_major_locator(MaxNLocator(6, integer=name == "served"))
+def _ticks(name: str, most: int) -> MaxNLocator:
+    """Of how much is served; where targets are counted no part of one is written."""
+    return whole_ticks(most) if name == "served" else MaxNLocator(most)
 
 
 def placements(plot: ResultPlots) -> Figure:
@@ -161,7 +162,7 @@ def _curves(
         if name in best:
             axes.axvline(best[name][0], color=_color(k), lw=1.0, ls="--")
     draw_along(axes, cells, _SERVED[kind])
-    _whole_numbers(axes, kind)
+    axes.yaxis.set_major_locator(_ticks(kind, 6))
     legend_below(figure)
     return figure
 
@@ -202,7 +203,7 @@ def trade_off(
     draw_marks(axes, best, None, _BEST)
     x, y = (_SERVED.get(name) or quantity(name, front.units[name]) for name in names)
     axes.set(xlabel=x, ylabel=y)
-    axes.xaxis.set_major_locator(MaxNLocator(8, integer=names[0] == "served"))
+    axes.xaxis.set_major_locator(_ticks(names[0], 8))
     axes.grid(zorder=0)
     legend_below(figure)
     return figure

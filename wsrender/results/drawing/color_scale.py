@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.results.drawing.style import INK, color_map
+from wsrender.results.drawing.whole import are_whole, whole_ticks
 
 # Red and blue around grey (Moreland 2009): colour-blind safe, and 0 is told from the white of what is empty.
 DIVERGING = "coolwarm"
@@ -21,6 +22,7 @@ MOST_STEPS = 12  # whole numbers that have a step of the bar each
 _INNER = (2.0, 98.0)  # percentiles of the values that decide what an outlier is
 _REACH = 1.0  # how far beyond them values are none, relative to what lies between them
 _FEWEST = 10  # values among which there are outliers
+_MOST_TICKS = 9
 _ROUNDING = 1e-9  # of the largest value: one of the other sign below it is rounding
 
 Extend = Literal["neither", "min", "max", "both"]
@@ -89,18 +91,17 @@ def color_scale(values: np.ndarray, label: str, signed: bool = False) -> ColorSc
     known = np.asarray(values, np.float64).ravel()
     known = known[np.isfinite(known)]
     low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
-    if not signed and np.array_equal(known, np.round(known)):
-        if high - low < MOST_STEPS:
-            return _steps(np.arange(low, high + 1), label)
-        ticks = MaxNLocator(integer=True)
-    else:
-        ticks = None
+    ticks = whole_ticks(_MOST_TICKS) if are_whole(known) else None
+    if ticks and not signed and high - low < MOST_STEPS:
+        return _steps(np.arange(low, high + 1), label)
     if high - low <= _ROUNDING * max(abs(low), abs(high)):
         return _steps(np.array([low]), label)
     lower, upper = _without_outliers(known)
     if signed or (low < -_ROUNDING * high and high > _ROUNDING * -low):
         size = max(-lower, upper)
-        return ColorScale(Normalize(-size, size), mpl.colormaps[DIVERGING], label, _ends(low < -size, high > size))
+        return ColorScale(
+            Normalize(-size, size), mpl.colormaps[DIVERGING], label, _ends(low < -size, high > size), ticks
+        )
     return ColorScale(Normalize(lower, upper), color_map(), label, _ends(low < lower, high > upper), ticks)
 
 

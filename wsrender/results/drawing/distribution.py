@@ -14,6 +14,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import checked_index
 from wsrender.results.drawing.style import GREY, INK, Heading, color_map, new_figure, paper_style, quantity
+from wsrender.results.drawing.whole import ticks
 from wsrender.volume.distribution_map import DistributionMap
 
 BINS = 50
@@ -55,7 +56,7 @@ def _draw(axes: Axes, values: np.ndarray) -> None:
     low, high = float(edges[0]), float(edges[-1])
     mean = float(values.mean(dtype=np.float64))
     if len(share) > 1:
-        axes.xaxis.set_major_locator(MaxNLocator(4))
+        axes.xaxis.set_major_locator(ticks(4, values))
     else:
         half = 0.5 * (abs(mean) or 1.0)
         edges = mean + half * np.array([-0.04, 0.04])

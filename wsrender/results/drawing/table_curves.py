@@ -2,10 +2,10 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.style import Heading, color_map, new_figure, paper_style, quantity
+from wsrender.results.drawing.whole import ticks
 from wsrender.volume.table import Table
 
 _BAND = ("_low", "_high")  # endings of the columns that bound another
@@ -37,8 +37,8 @@ def curves(table: Table, *, title: Heading | str = "") -> Figure:
                 axes.fill_between(x, low[order], high[order], color=color, alpha=0.25, linewidth=0, zorder=2)
         axes.set_xlabel(quantity(across, table.units.get(across)))
         axes.set_ylabel(quantity(names[0] if len(names) == 1 else _kind(unit), unit))
-        axes.xaxis.set_major_locator(MaxNLocator(8, integer=numbers[across].dtype.kind == "i"))
-        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.xaxis.set_major_locator(ticks(8, numbers[across]))
+        axes.yaxis.set_major_locator(ticks(5, *(numbers[name] for name in names)))
         axes.grid(zorder=0)
         if len(names) > 1:
             axes.legend(frameon=False, fontsize=8)

@@ -107,6 +107,7 @@ class Channel(TypedDict):
     data: Data
     categories: NotRequired[list[Category]]
     signed: NotRequired[bool]
+    whole: NotRequired[bool]
 
 
 @_strict

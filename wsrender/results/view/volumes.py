@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERDICTS, VERMILION, YELLOW
+from wsrender.results.drawing.whole import are_whole
 from wsrender.results.view.blobs import Blobs, Encoding, encoded, fitting, is_exact, limits
 from wsrender.results.view.manifest import Category, Channel, Volume
 from wsrender.results.view.words import said, unit_said
@@ -147,8 +148,11 @@ def channel(
     }
     if categories is not None:
         entry["categories"] = _colored(categories)
-    elif low < 0 < high:
+        return entry, is_exact(values, chosen, low, high)
+    if low < 0 < high:
         entry["signed"] = True
+    if are_whole(values):
+        entry["whole"] = True
     return entry, is_exact(values, chosen, low, high)
 
 

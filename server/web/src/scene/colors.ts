@@ -32,6 +32,7 @@ export class ColorScale {
   constructor(
     readonly label: string, readonly unit: string, readonly low: number, readonly high: number, readonly log: boolean, colors: string,
     readonly data: [number, number], readonly categories: { value: number; name: string; color: string }[] | null = null,
+    readonly whole = false,
   ) {
     this.colors = table(colors);
     if (categories?.length) {
@@ -59,10 +60,14 @@ export class ColorScale {
   get below(): boolean { return this.data[0] < this.low - 1e-9 * (this.high - this.low); }
   get above(): boolean { return this.data[1] > this.high + 1e-9 * (this.high - this.low); }
   get title(): string { return titled(this); }
-  /** Round values within the range, about `count`. */
+  /** Round values within the range, about `count`; of whole values whole ones. */
   ticks(count = 5): number[] {
     if (this.low === this.high) return [this.low];
-    if (!this.log) return round(this.low, this.high, count);
+    const found = this.rounded(count), kept = this.whole ? found.filter((v) => Math.abs(v - Math.round(v)) < 1e-9) : found;
+    return kept.length ? kept : [this.low, this.high];
+  }
+  private rounded(count: number): number[] {
+    if (!this.log) return round(this.low, this.high, count, this.whole);
     const decades = Math.log10(this.high / this.low), found: number[] = [];
     for (let e = Math.floor(Math.log10(this.low)); e <= Math.log10(this.high); e++) {
       for (const m of decades > 3 ? [1] : decades > 1.5 ? [1, 3] : [1, 2, 5]) {
@@ -77,15 +82,16 @@ export class ColorScale {
 /** A label with its unit. */
 export const titled = ({ label, unit }: { label: string; unit: string }): string => (unit && unit !== "1" ? `${label} [${unit}]` : label);
 
-function round(low: number, high: number, count: number): number[] {
-  const step = roundStep((high - low) / count), found: number[] = [];
+function round(low: number, high: number, count: number, whole: boolean): number[] {
+  const step = roundStep((high - low) / count, whole), found: number[] = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
   return found;
 }
 
-export function roundStep(least: number): number {
-  const power = 10 ** Math.floor(Math.log10(least) + 1e-9);
-  return ([1, 2, 2.5, 5, 10].find((k) => k * power >= least * (1 - 1e-9)) ?? 10) * power;
+/** A step that people count in, at least so large; a whole one where `whole`. */
+export function roundStep(least: number, whole = false): number {
+  const power = whole ? Math.max(1, 10 ** Math.floor(Math.log10(least) + 1e-9)) : 10 ** Math.floor(Math.log10(least) + 1e-9);
+  return ([1, 2, ...(whole && power === 1 ? [] : [2.5]), 5, 10].find((k) => k * power >= least * (1 - 1e-9)) ?? 10) * power;
 }
 
 /** A number as people read it; a true minus. */
@@ -101,7 +107,7 @@ export function text(v: number, step = 0): string {
 }
 
 /** The scale of a channel: `data` and `inner` are its values' extent, with and without outliers. */
-export function scaleOf(channel: Pick<Channel, "label" | "unit" | "signed" | "categories">, data: [number, number] | null, inner: [number, number] | null, range: Range | null, colors: string): ColorScale {
+export function scaleOf(channel: Pick<Channel, "label" | "unit" | "signed" | "whole" | "categories">, data: [number, number] | null, inner: [number, number] | null, range: Range | null, colors: string): ColorScale {
   const whole = data ?? [0, 1];
   if (channel.categories?.length) {
     const of = channel.categories.map((c) => c.value), low = Math.min(...of) - 0.5, high = Math.max(...of) + 0.5;
@@ -116,5 +122,5 @@ export function scaleOf(channel: Pick<Channel, "label" | "unit" | "signed" | "ca
   const log = range?.scale === "log" && high > 0;
   if (log && low <= 0) low = high * 1e-4;
   if (high < low) high = low;
-  return new ColorScale(channel.label, channel.unit, low, high, log, diverging ? DIVERGING : colors, whole);
+  return new ColorScale(channel.label, channel.unit, low, high, log, diverging ? DIVERGING : colors, whole, null, channel.whole);
 }

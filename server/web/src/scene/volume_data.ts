@@ -6,7 +6,7 @@ import { difference, extent, occupancy, values, withoutOutliers, type Blob_, typ
 import type { Cloud } from "./splat";
 import { VolumeBody } from "./volume";
 
-export interface Shown { lattice: Lattice; channel: Pick<Channel, "label" | "unit" | "signed" | "categories"> | null; whole: [number, number] | null; inner: [number, number] | null }
+export interface Shown { lattice: Lattice; channel: Pick<Channel, "label" | "unit" | "signed" | "whole" | "categories"> | null; whole: [number, number] | null; inner: [number, number] | null }
 
 const KEPT = 4; // channels
 
@@ -57,7 +57,7 @@ export class VolumeData {
     const own = await shown(this.volume, this.grid, channel, this.blob);
     if (!minus) return own;
     const other = await minus.get({ channel } as VolumeSettings, null), lattice = difference(own.lattice, other.lattice);
-    const about = own.channel && { label: `Δ ${own.channel.label}`, unit: own.channel.unit, signed: true };
+    const about = own.channel && { label: `Δ ${own.channel.label}`, unit: own.channel.unit, signed: true, whole: own.channel.whole };
     return { lattice, channel: about, whole: extent(lattice.values!), inner: withoutOutliers(lattice.values!) };
   }
 

@@ -10,6 +10,8 @@ import { channelOf } from "./look";
 import type { ViewModel } from "./model";
 
 const WIDTH = 266, HEIGHT = 168;
+const WHOLE = [1, 2, 5, 10, 20, 50].flatMap((step) => [1, 1e2, 1e4, 1e6, 1e8].map((size) => step * size)).sort((a, b) => a - b); // steps of a count
+const whole = (values: (number | null)[]): boolean => values.every((v) => v === null || Number.isInteger(v));
 
 export function Plots({ model }: { model: ViewModel }) {
   const { plots } = model.manifest.value!, channel = channelOf(model);
@@ -35,7 +37,7 @@ function OnePlot({ model, plot }: { model: ViewModel; plot: Plot }) {
   useEffect(() => {
     const color = (name: string) => getComputedStyle(host.current!).getPropertyValue(name).trim();
     const [text, line, accent] = [color("--muted"), color("--line"), color("--accent")];
-    const axis = (label: string, vertical = false): uPlot.Axis => ({ label, stroke: text, grid: { stroke: line, width: 1 }, ticks: { stroke: line }, labelSize: 16, size: vertical ? 52 : 38, font: "11px system-ui, sans-serif", labelFont: "11px system-ui, sans-serif" });
+    const axis = (label: string, values: (number | null)[], vertical = false): uPlot.Axis => ({ label, ...(whole(values) && { incrs: WHOLE }), stroke: text, grid: { stroke: line, width: 1 }, ticks: { stroke: line }, labelSize: 16, size: vertical ? 52 : 38, font: "11px system-ui, sans-serif", labelFont: "11px system-ui, sans-serif" });
     const histogram = plot.kind === "histogram";
     const colors = [accent, "#d55e00", "#009e73", "#cc79a7"];
     const drawMarks = (u: uPlot) => {
@@ -59,7 +61,7 @@ function OnePlot({ model, plot }: { model: ViewModel; plot: Plot }) {
     };
     const u = new uPlot({
       width: WIDTH, height: HEIGHT, legend: { show: plot.y.length > 1, live: false }, cursor: { drag: { x: histogram, y: false, setScale: !histogram } },
-      scales: { x: { time: false } }, axes: [axis(titled(plot.x)), axis(plot.y[0] ? titled(plot.y[0]) : "", true)],
+      scales: { x: { time: false } }, axes: [axis(titled(plot.x), plot.x.values), axis(plot.y[0] ? titled(plot.y[0]) : "", plot.y.flatMap((each) => each.values), true)],
       series: [{}, ...plot.y.map((each, i) => ({ label: each.label, stroke: colors[i % 4]!, width: 1.5, ...(histogram ? { paths: uPlot.paths.bars!({ size: [1, 64] }), fill: colors[i % 4]! + "99", points: { show: false } } : { points: { show: plot.x.values.length < 40 } }) }))],
       hooks: {
         draw: [drawMarks],
