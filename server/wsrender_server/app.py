@@ -140,7 +140,7 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
     app.add_middleware(HostLayer, settings=settings)
-    app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
+    app.add_middleware(RequestLayer, metrics=parts.metrics, settings=settings)
     document = cache(lambda keys_needed: openapi_document(app, keys_needed))
     app.openapi = lambda: document(authenticator.required)
     return app

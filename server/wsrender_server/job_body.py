@@ -176,7 +176,12 @@ class Places:
 async def job_body(request: Request) -> AsyncIterator[bytes]:
     """A body of JSON, else HttpProblem 415; of long ones few are held at a time: HttpProblem 429 for another."""
     _check_type(request)
-    places: Places = request.app.state.parts.long_bodies
+    async for body in held_body(request, request.app.state.parts.long_bodies):
+        yield body
+
+
+async def held_body(request: Request, places: Places) -> AsyncIterator[bytes]:
+    """A body, which has one of the places while it is read and used where it is long. HttpProblem 429 without one."""
     owner = getattr(request.state, "owner", "")  # who asks is looked at first
     pieces, size, has_place = [], 0, False
     try:

@@ -71,7 +71,7 @@ class Parts:
         self.estimates = Estimates(planners, settings.max_planning_s)
         admission = SideProcess(min(settings.max_memory_bytes, MOST_ADMISSION_BYTES), models)
         self.admissions = Admissions(self.store, admission, settings.max_samples)
-        self.long_bodies = Places()
+        self.long_bodies, self.uploads = Places(), Places()
         self.streams = Streams(self.settings, self.store.files.models)
         self.view_sessions = ViewSessions(self.settings, self.store.files.models)
         self.converted = ConvertedFiles(self.store.files, self.side_process)

@@ -13,8 +13,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from wsrender_server.metrics import Metrics
 from wsrender_server.problems import HttpProblem, problem_of_error, response_of_problem
+from wsrender_server.settings import PREFIX, Settings
 
 REQUEST_ID = re.compile(r"[A-Za-z0-9._-]{8,64}")
+UPLOADS = "/v1/models"
 SAFE_HEADERS = {"X-Content-Type-Options": "nosniff"}
 
 log = structlog.get_logger("wsrender.http")
@@ -26,10 +28,10 @@ class RequestLayer:
     Whatever the application does not answer is answered with a problem document and logged with its traceback.
     """
 
-    def __init__(self, app: ASGIApp, metrics: Metrics, max_body_bytes: int):
+    def __init__(self, app: ASGIApp, metrics: Metrics, settings: Settings):
         self.app = app
         self._metrics = metrics
-        self._max_body_bytes = max_body_bytes
+        self._settings = settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request (ASGI)."""
@@ -65,17 +67,18 @@ class RequestLayer:
                 self._record(scope, state, status, first_byte, time.perf_counter() - started)
 
     def _limited(self, scope: Scope, receive: Receive) -> Receive:
-        limit, received = self._max_body_bytes, 0
+        setting = "max_upload_bytes" if scope["path"].endswith(UPLOADS) else "max_body_bytes"
+        limit, received = getattr(self._settings, setting), 0
         announced = dict(scope["headers"]).get(b"content-length", b"0")
 
         async def receive_within_limit() -> Message:
             nonlocal received
             if announced.isdigit() and int(announced) > limit:
-                raise _too_large(limit)
+                raise _too_large(limit, setting)
             message = await receive()
             received += len(message.get("body", b""))
             if received > limit:
-                raise _too_large(limit)
+                raise _too_large(limit, setting)
             return message
 
         return receive_within_limit
@@ -99,8 +102,8 @@ def _client_left(error: Exception) -> bool:
     return isinstance(error, ExceptionGroup) and error.split(BrokenResourceError)[1] is None
 
 
-def _too_large(limit: int) -> HttpProblem:
-    return HttpProblem(413, f"the body may have {limit} bytes")
+def _too_large(limit: int, setting: str) -> HttpProblem:
+    return HttpProblem(413, f"the body may have {limit:,} bytes, which {PREFIX}{setting.upper()} of this server allows")
 
 
 def _request_id(scope: Scope) -> str:

@@ -121,7 +121,9 @@ class Settings(BaseSettings):
     """Connections that an address may have at a time."""
 
     max_body_bytes: int = Field(default=16 * 2**20, ge=1)
-    """Largest request body."""
+    """Largest request body, but of an upload."""
+    max_upload_bytes: int = Field(default=64 * 2**20, ge=1)
+    """Largest upload, of a model, a ZIP, a mesh or a table."""
     max_samples: int = Field(default=10**11, ge=1)
     """Largest number of samples of a job."""
     max_memory_bytes: int = Field(default=8 * GIB, ge=2**28)

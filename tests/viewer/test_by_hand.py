@@ -4,17 +4,19 @@ import base64
 import hashlib
 import io
 import json
+from pathlib import Path
 from typing import Any
 
 import httpx2
 import numpy as np
 import pytest
 import trimesh
+from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.hostile.cases import zipped
 from tests.server.http.test_view import read_message
-from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, tip, until
+from tests.viewer.watched import JOB, PATIENCE_MS, Watched, clicked, differing, opened, pixels, settle, tip, until
 from tests.viewer.written import WRITTEN, decoded, looking
 from wsrender.documents.robot import DHTable
 from wsrender.results.view.interactive import Interactive
@@ -243,3 +245,23 @@ def test_a_robot_that_is_edited_is_moved_and_its_volume_followed(watched: Watche
     written = json.loads(page.get_by_label("Job document").input_value())["robot"]
     assert written["dh"] == robot["dh"]
     np.testing.assert_allclose(written["limits"]["joint2"], limits["joint2"], atol=1e-12)
+
+
+def test_an_upload_that_is_too_large_is_told_the_limit(chromium, tmp_path: Path, monkeypatch) -> None:
+    """Though the server stops reading it: the page is no less sure of the server for that."""
+    monkeypatch.setenv("WSRENDER_MAX_UPLOAD_BYTES", str(1 << 20))
+    page = chromium.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    with LocalServer(tmp_path) as server:
+        watched = Watched(page, server.url)
+        _, problem = at_model(watched)
+        chooser = page.locator('.field:has([data-pointer="#/robot/model"]) input[type=file]')
+        for size in ((1 << 20) + 1, 24 << 20):
+            file = {"name": f"{size}.zip", "mimeType": "application/zip", "buffer": b"PK\3\4" + bytes(size - 4)}
+            chooser.set_input_files(file)
+            problem.get_by_text(f"{size}.zip: the body may have 1,048,576 bytes").wait_for()
+            assert "WSRENDER_MAX_UPLOAD_BYTES" in problem.inner_text()
+        page.wait_for_timeout(500)
+        assert page.get_by_text("does not answer").count() == 0
+    page.close()
+    assert watched.errors == []

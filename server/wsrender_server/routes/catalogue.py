@@ -1,6 +1,7 @@
 """What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
 
 import codecs
+from collections.abc import AsyncIterator
 from datetime import datetime
 from functools import cache
 from typing import Annotated, Any
@@ -16,6 +17,7 @@ from wsrender.robots import archives, library
 from wsrender_server.admission import check_archive, check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.hosts import address
+from wsrender_server.job_body import held_body
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.query import Identifier
@@ -140,13 +142,13 @@ def list_robots(principal: Reader) -> Page[RobotView]:
     return Page(items=[RobotView.of(robot) for robot in library.describe()])
 
 
-async def _uploaded_body(request: Request) -> tuple[str, bytes]:
+async def _uploaded_body(request: Request) -> AsyncIterator[tuple[str, bytes]]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type not in (ANY_TYPE, *XML_TYPES, *FILE_TYPES):
         allowed = ", ".join((ANY_TYPE, "application/xml", *FILE_TYPES))
         raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
-    body = await request.body()
-    return _type_of(body) if media_type == ANY_TYPE else media_type, body
+    async for body in held_body(request, request.app.state.parts.uploads):
+        yield _type_of(body) if media_type == ANY_TYPE else media_type, body
 
 
 def _type_of(body: bytes) -> str:
@@ -174,7 +176,7 @@ _MODEL_BODY = {
             "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
             "links": {"model": {"operationId": "get_model", "parameters": {"sha256": "$response.body#/sha256"}}},
         },
-        **problem_responses(401, 403, 408, 409, 413, 415, 422),
+        **problem_responses(401, 403, 408, 409, 413, 415, 422, 429),
     },
     openapi_extra=_MODEL_BODY,
 )  # fmt: skip
@@ -192,6 +194,8 @@ def upload_model(
     NPY file, for a `height_field`, or a table, CSV, Parquet or NPY: of targets, for `"targets": {"model": sha256}`, of
     joint values, for `"configurations": {"model": sha256}`, or of points, for `"left": {"model": sha256}`. Each is read
     by the jobs that name it; meshes of a model travel in a ZIP alone.
+
+    No upload is larger than the server's setting `WSRENDER_MAX_UPLOAD_BYTES`, 64 MiB where it is not set.
 
     A header Content-Type of one of these says which it is: application/xml, application/zip, model/stl, model/obj,
     model/ply, application/x-npy, text/csv or application/vnd.apache.parquet. As application/octet-stream the first

@@ -118,7 +118,7 @@ def test_ranges_and_etags(base, job):
     assert (part.status_code, part.content) == (206, whole.content[100:200])
     assert httpx2.get(path, headers={"If-None-Match": whole.headers["etag"]}, timeout=60).status_code == 304
     large = httpx2.post(
-        f"{base}/v1/models", content=b" " * (16 * 2**20 + 1), headers={"Content-Type": "application/xml"}
+        f"{base}/v1/models", content=b" " * (64 * 2**20 + 1), headers={"Content-Type": "application/xml"}
     )
     assert large.status_code == 413 and large.headers["content-type"] == "application/problem+json"
 

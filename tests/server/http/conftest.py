@@ -32,7 +32,8 @@ def result(result_folder: Path) -> wsrender.Result:
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    return Settings(data_dir=tmp_path / "data", max_queued_per_owner=5, max_body_bytes=1 << 20, min_free_disk_bytes=0)
+    limits = {"max_queued_per_owner": 5, "max_body_bytes": 1 << 20, "max_upload_bytes": 3 << 20}
+    return Settings(data_dir=tmp_path / "data", min_free_disk_bytes=0, **limits)
 
 
 @pytest.fixture

@@ -106,6 +106,20 @@ def test_no_owner_has_all_places_of_long_bodies(client, not_here, monkeypatch):
     assert client.post("/v1/jobs", json=LONG).status_code == 202 and places.taken["ann"] == MOST_HELD_OF_OWNER
 
 
+def test_few_uploads_are_held_at_a_time(client, monkeypatch):
+    """A place is given back with the answer, whatever it is; short ones need none, nor do submissions."""
+    places = Places(1)
+    monkeypatch.setattr(client.app.state.parts, "uploads", places)
+    headers = {"Content-Type": "text/csv"}
+    long = b"1,2,3\n" * LONGEST_HERE
+    for content, kind, status in ((long, headers, 201), (long, {"Content-Type": "application/zip"}, 409)):
+        assert client.post("/v1/models", content=content, headers=kind).status_code == status
+    assert not places.taken and places.take("somebody")
+    assert problem_of(client.post("/v1/models", content=long, headers=headers), 429, "busy")["retryable"]
+    assert client.post("/v1/models", content=b"1,2,3\n", headers=headers).status_code == 201
+    assert client.post("/v1/jobs", json=LONG).status_code == 202
+
+
 def test_short_bodies_need_no_place(client, monkeypatch):
     monkeypatch.setattr(client.app.state.parts, "long_bodies", Places(0))
     assert client.post("/v1/jobs", json=DOCUMENT).status_code == 202

@@ -8,6 +8,7 @@ from anyio import BrokenResourceError
 from wsrender_server.connections import BodyLayer
 from wsrender_server.metrics import Metrics
 from wsrender_server.requests import RequestLayer
+from wsrender_server.settings import Settings
 
 SCOPE = {"type": "http", "method": "GET", "path": "/v1/jobs/x/events", "headers": []}
 
@@ -28,7 +29,7 @@ def logged(fault: BaseException, *, answering: bool) -> tuple[list[str], list[in
     async def receive():
         return {"type": "http.disconnect"}
 
-    layer = RequestLayer(app, Metrics(), 1)
+    layer = RequestLayer(app, Metrics(), Settings(max_body_bytes=1))
     with structlog.testing.capture_logs() as logs:
         try:
             asyncio.run(layer(dict(SCOPE), receive, send))

@@ -203,6 +203,19 @@ def test_a_large_body_is_refused_while_it_arrives(client):
     problem_of(announced, 413, "body_too_large")
 
 
+def test_uploads_have_a_limit_of_their_own(client, settings):
+    """Which its refusal names, whether the length is announced or not; other bodies keep theirs."""
+    text = b"<mujoco>" + b" " * (2 << 20) + b"</mujoco>"
+    headers = {"Content-Type": "application/octet-stream"}
+    assert client.post("/v1/models", content=text, headers=headers).status_code == 201
+    for content in (b"0" * ((3 << 20) + 1), iter([b"0" * (1 << 20)] * 4)):
+        said = problem_of(client.post("/v1/models", content=content, headers=headers), 413, "body_too_large")["detail"]
+        assert "3,145,728 bytes" in said and "WSRENDER_MAX_UPLOAD_BYTES" in said
+    announced = client.post("/v1/jobs", content=b" " * (2 << 20), headers={"Content-Type": "application/json"})
+    said = problem_of(announced, 413, "body_too_large")["detail"]
+    assert "1,048,576 bytes" in said and "WSRENDER_MAX_BODY_BYTES" in said
+
+
 def validated(client, document):
     """The answer once the job is planned: the first answers may say that this takes a while."""
     response = client.post("/v1/jobs:validate", json=document)
