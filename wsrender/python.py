@@ -221,7 +221,8 @@ def reachability(
         document.
     ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
         given.
-    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
+    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point, or one for all; None: any
+        orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
@@ -302,8 +303,8 @@ def all_postures(
     ``inertia``: What evaluates the joint-space inertia: the kernels, or MuJoCo itself.
     ``precision``: Floating-point type of the indices; postures are computed in double.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
-    ``quat_wxyz``: Orientations, a quaternion w, x, y, z of unit length for each position; None: any orientation will
-        do.
+    ``quat_wxyz``: Orientations, a quaternion w, x, y, z of unit length for each position, or one for all; None: any
+        orientation will do.
     ``free_axis``: Axis of the tip about which it may turn as it likes; None: none.
     ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
     ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
@@ -543,7 +544,8 @@ def base_placement(
         document; None: robots are given.
     ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
         given.
-    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
+    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point, or one for all; None: any
+        orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
@@ -677,7 +679,8 @@ def two_arm_placement(
 
     ``points_m``: Positions of the targets in the world frame, rows of x, y, z, or a single one [m]; None: targets are
         given.
-    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
+    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point, or one for all; None: any
+        orientation will do.
     ``constraints``: Which configurations of both arms are admitted, and which of a hand-over's they may be in together;
         None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.

@@ -29,6 +29,26 @@ def test_one_means_a_list_of_one(analysis):
         assert getattr(one, name) == ((value,) if isinstance(value, str) else (tuple(value),))
 
 
+@pytest.mark.parametrize(("analysis", "fields"), [(name, FIELDS[name]) for name in ("reachability", "postures")])
+@pytest.mark.parametrize("given", [QUATERNION, [QUATERNION], np.array(QUATERNION)], ids=["one", "listed", "array"])
+def test_one_quaternion_is_that_of_all_positions(analysis, fields, given):
+    position, quat = fields
+    one, each = (
+        parsed(analysis, **{position: [POINT] * 3, quat: given}),
+        {position: [POINT] * 3, quat: [QUATERNION] * 3},
+    )
+    assert one == parsed(analysis, **each) and len(getattr(one, quat)) == 3
+
+
+def test_one_quaternion_of_jobs_of_bases():
+    over = {"x_m": [0, 1, 0.5]}
+    asked = {"analysis": "base_placement", "robot": {"library": "ur5e"}, "points_m": [POINT] * 2, "over": over}
+    assert parse_job({**asked, "quats_wxyz": QUATERNION}) == parse_job({**asked, "quats_wxyz": [QUATERNION] * 2})
+    arms = {name: {"robot": {"library": "ur5e"}, "over": {}} for name in ("first", "second")}
+    asked = {"analysis": "two_arm_placement", "points_m": [POINT] * 2, **arms}
+    assert parse_job({**asked, "quats_wxyz": QUATERNION}) == parse_job({**asked, "quats_wxyz": [QUATERNION] * 2})
+
+
 def test_arrays_too():
     points = np.array(POINT)
     assert parsed("reachability", points_m=points) == parsed("reachability", points_m=points[None])

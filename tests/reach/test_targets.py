@@ -277,3 +277,19 @@ def test_too_many_kinds_of_targets_are_refused(tmp_path):
     rows = ["x_m,y_m,z_m,position_tolerance_m", *(f"0.4,0,0.3,{1e-4 + k * 1e-6}" for k in range(101))]
     with pytest.raises(ws.InputError, match="101 combinations of tolerances and free axes; allowed: 100"):
         ws.reachable("ur5e", table(tmp_path, "\n".join(rows)), device="cpu")
+
+
+def test_constraints_and_surroundings_are_those_of_a_job(capsys):
+    """As of `ws.postures` and `ws.reachability`, whose labels they give; and a bar is asked for in the same way."""
+    points = np.random.default_rng(8).uniform([-0.9, -0.9, -0.4], [0.9, 0.9, 0.6], (40, 3))
+    asked = {"constraints": {"self_collision": True}, "environment": ws.Environment([ws.HalfSpace(name="floor")])}
+    found = ws.reachable("ur5e", points, [0, 1, 0, 0], **asked, progress=True, device="cpu")
+    table = ws.reachability("ur5e", points, [0, 1, 0, 0], **asked, device="cpu").tables["targets"]
+    assert list(found.labels) == list(table["label"]) and list(found.reasons) == list(table["reason"])
+    assert {"reachable", "blocked"} <= set(found.labels) and "environment" in found.reasons
+    plain = asked | {"environment": {"items": [{"shape": "half_space", "name": "floor"}]}}
+    assert list(ws.reachable("ur5e", points, [0, 1, 0, 0], **plain, device="cpu").labels) == list(found.labels)
+    with pytest.raises(ws.InputError, match="environment: must not be given beside a sequence of constraints"):
+        ws.reachable("ur5e", points, constraints=[], environment=asked["environment"], device="cpu")
+    with pytest.raises(ws.InputError, match=r"constraints\.self_collisions: unknown constraint"):
+        ws.reachable("ur5e", points, constraints={"self_collisions": True}, device="cpu")

@@ -1,9 +1,9 @@
 """Targets of an end effector in a job document: points or poses, and how it is decided whether they are reached."""
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, ValidationInfo
 
 from wsrender.documents.document import Document
 from wsrender.documents.options import Device, Precision
@@ -11,8 +11,20 @@ from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, 
 
 SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
 
+
+def _one_for_all(quaternions: tuple[Any, ...], info: ValidationInfo) -> tuple[Any, ...]:
+    """A single quaternion beside several positions, as often as there are positions."""
+    positions = info.data.get("points_m") or info.data.get("position_m") or ()
+    return quaternions * len(positions) if len(quaternions) == 1 and positions else quaternions
+
+
 Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), rows_of(3, least=1)]
-Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), rows_of(4, least=1)]
+Quaternions = Annotated[
+    tuple[tuple[float, float, float, float], ...],
+    Field(min_length=1),
+    rows_of(4, least=1),
+    AfterValidator(_one_for_all),
+]
 
 
 class Targets(Document):
@@ -23,7 +35,8 @@ class Targets(Document):
     points_m: Points
     """Positions of the targets in the world frame, rows of x, y, z, or a single one [m]."""
     quats_wxyz: Quaternions | None = None
-    """Orientations of the targets, a quaternion w, x, y, z for each point; null: any orientation will do."""
+    """Orientations of the targets, a quaternion w, x, y, z for each point, or one for all; null: any orientation
+    will do."""
     position_tolerance_m: PositiveNumber = 1e-5
     """Largest distance to a target that counts as reached [m]."""
     angle_tolerance_rad: AngleTolerance = 1e-5

@@ -36,6 +36,7 @@ from wsrender.reach.starts import towards_limits
 from wsrender.reach.targets import rotations, rows_of, with_axis
 from wsrender.robot import as_robot
 from wsrender.robot.constraints import constraints_for
+from wsrender.robot.poses import position_and_quaternion
 from wsrender.robots.closed_form import ClosedForm, NearlyClosedForm, OpenWristForm, families
 from wsrender.robots.kinematics import Kinematics
 from wsrender.short_repr import short_repr
@@ -352,6 +353,7 @@ def postures(
 ) -> Postures:
     """All configurations of a pose ``position_m`` (3,) [m], ``quat_wxyz`` (4,) in the world, or of N, a row each.
 
+    A single orientation is that of all positions; poses may be transforms (N, 4, 4) or (4, 4), too.
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. Without ``quat_wxyz`` any orientation will
     do; with a ``free_axis`` "x", "y" or "z" of the tip it may turn about that as it likes. ``constraints`` and
     ``environment`` are those of a job document, or their parts of one: they say of each posture whether it is free.
@@ -365,6 +367,7 @@ def postures(
     ((8, 6), [True])
     """
     subject = as_robot(robot)
+    position_m, quat_wxyz = position_and_quaternion(position_m, quat_wxyz, ("position_m", "quat_wxyz"))
     T = poses_of(position_m, quat_wxyz)
     if free_axis is not None and (free_axis not in AXES or quat_wxyz is None):
         given = f"{free_axis!r} is not allowed; {', '.join(AXES)}, or None"
@@ -399,6 +402,7 @@ def poses_of(position_m: Any, quat_wxyz: Any = None) -> np.ndarray:
     T[:, :3, 3] = position
     if quat_wxyz is not None:
         quat = rows_of(quat_wxyz, 4, "quat_wxyz")
+        quat = np.repeat(quat, len(position), axis=0) if len(quat) == 1 else quat
         if len(quat) != len(position):
             raise InputError("quat_wxyz", f"has {len(quat)} rows for {len(position)} of position_m")
         length = np.linalg.norm(quat, axis=1)

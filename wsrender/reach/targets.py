@@ -1,20 +1,23 @@
 """Whether a robot reaches given targets, with what configuration, or why not."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from wsrender.documents.constraints import Constraints
+from wsrender.documents.environment import Environment
 from wsrender.documents.quantities import argument, positive
 from wsrender.documents.target_lists import AXES, TargetTable
 from wsrender.engine import thread_count
 from wsrender.errors import DocumentError, InputError
 from wsrender.keywords import keywords
 from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.progress import RunProgress
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
 from wsrender.reach.admission import Admission
 from wsrender.reach.closed_labels import evidence, rotations_of
@@ -22,6 +25,8 @@ from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions, closed_form_of
 from wsrender.reach.target_list import TargetList, check_unit, target_list
 from wsrender.robot import as_robot
+from wsrender.robot.constraints import constraints_for
+from wsrender.robot.poses import position_and_quaternion
 from wsrender.robots.kinematics import Kinematics
 from wsrender.short_repr import short_repr
 from wsrender.tolerances import TOLERANCES
@@ -79,40 +84,55 @@ def reachable(
     precision: str = "float64",
     device: str = "auto",
     threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
-    constraints: Sequence[Constraint] = (),
+    progress: Callable[[int], None] | bool | None = None,
+    constraints: Constraints | Mapping[str, Any] | Sequence[Constraint] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
 ) -> Reachability:
     """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
+
+    An orientation (4,) is that of all points; poses may be transforms (N, 4, 4) or (4, 4), too, and targets a table:
+    its path or a `TargetTable`.
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes.
     Positions and orientations are in the world frame. Where the arm has a closed form it decides, but for targets
     near a boundary or a singular pose; those, and targets of other arms, are tried from many starts within the joint
     limits (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
-    while both shrink (default: half the reach). ``progress``: called with the targets decided. ``constraints``: those
-    of `wsrender.robot.constraints.constraints_for`, which must admit the configurations.
+    while both shrink (default: half the reach). ``progress``: called with the targets decided; True shows a bar.
+    ``constraints`` and ``environment`` are those of a job document, or their parts of one: they must admit the
+    configurations.
 
-    Raises InputError, ModelError.
+    Raises InputError, DocumentError, ModelError.
 
     >>> found = ws.reachable("ur5e", [[0.4, 0.2, 0.3], [1.5, 0.0, 0.0]])
     >>> found.labels.tolist(), found.reasons.tolist()
     (['reachable', 'unreachable'], ['', 'out of reach'])
     """
     subject = as_robot(robot)
+    choice = Constraints(**constraints) if isinstance(constraints, Mapping) else constraints
+    around = Environment(**environment) if isinstance(environment, Mapping) else environment
     tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)
-    options |= {"seed": seed, "precision": precision, "device": device, "threads": threads}
+    if isinstance(choice, Constraints | None):
+        choice = constraints_for(subject, choice, around)
+    elif around is not None:
+        raise InputError("environment", "must not be given beside a sequence of constraints, which say their own")
+    options |= {"seed": seed, "precision": precision, "device": device, "threads": threads, "constraints": choice}
     if isinstance(points, str | PathLike | TargetTable):
         if orientations is not None:
             raise InputError("orientations", "must not be given beside a table of targets, which says its own")
         table = points if isinstance(points, TargetTable) else _table(fspath(points))
         targets = target_list(table, "points")
         check_unit(targets, table, subject.chain.center, subject.chain.reach)
-        return reachable_targets(
-            subject.chain, targets, tolerances, progress=progress, constraints=constraints, **options
-        )
-    position = rows_of(points, 3, "points")
-    axes = None if orientations is None else rotations(orientations, len(position))
-    return _decided(subject.chain, position, axes, tolerances, progress=progress, constraints=constraints, **options)
+        decide, count = partial(reachable_targets, subject.chain, targets, tolerances, **options), len(targets)
+    else:
+        points, orientations = position_and_quaternion(points, orientations, ("points", "orientations"))
+        position = rows_of(points, 3, "points")
+        axes = None if orientations is None else rotations(orientations, len(position))
+        decide, count = partial(_decided, subject.chain, position, axes, tolerances, **options), len(position)
+    if progress is not True:
+        return decide(progress=progress or None)
+    with RunProgress() as bar:
+        return decide(progress=lambda done: bar(done, count, "targets"))
 
 
 @keywords
@@ -131,15 +151,17 @@ def reachable_labels(
 ) -> np.ndarray:
     """Labels alone of ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz of any length but 0.
 
-    Returns (N,) int8: 1 reachable, 0 unreachable, -1 undecided, which are those of `reachable` with the same options,
-    by the same proofs, without configurations and reasons: much faster where the arm has a closed form. What that
-    leaves open is searched as there. Contiguous arrays of float64 are read where they are.
+    An orientation (4,) is that of all points; poses may be transforms (N, 4, 4) or (4, 4), too. Returns (N,) int8:
+    1 reachable, 0 unreachable, -1 undecided, which are those of `reachable` with the same options, by the same proofs,
+    without configurations and reasons: much faster where the arm has a closed form. What that leaves open is searched
+    as there. Contiguous arrays of float64 are read where they are.
 
     Raises InputError, ModelError.
 
     >>> ws.reachable_labels("ur5e", [[0.4, 0.2, 0.3], [1.5, 0.0, 0.0]]).tolist()
     [1, 0]
     """
+    points, orientations = position_and_quaternion(points, orientations, ("points", "orientations"))
     chain, kind = as_robot(robot).chain, "position" if orientations is None else "pose"
     tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)
     options |= {"seed": seed, "precision": precision, "device": device}
@@ -361,8 +383,9 @@ def rotations(quat_wxyz: Any, count: int) -> np.ndarray:
 
 
 def quaternions(quat_wxyz: Any, count: int) -> np.ndarray:
-    """Quaternions (N, 4) of any length but 0; InputError names ``orientations``."""
+    """Quaternions (N, 4) of any length but 0, a row each or one for all; InputError names ``orientations``."""
     quat = rows_of(quat_wxyz, 4, "orientations")
+    quat = np.repeat(quat, count, axis=0) if len(quat) == 1 else quat
     if len(quat) != count:
         raise InputError("orientations", f"has {len(quat)} rows for {count} points")
     short = np.flatnonzero(np.abs(quat[:, 0]) < SHORT)  # few: no length of all is computed

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.robot import DHTable, RobotSpec
 from wsrender.documents.sampling import PYTHON_COUNT, BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import InputError
@@ -17,6 +18,7 @@ from wsrender.mechanisms.five_bar import FiveBar
 from wsrender.progress import RunProgress
 from wsrender.results.result import Result
 from wsrender.robot import Robot, UserRobot, as_robot, load_robot
+from wsrender.robot.poses import position_and_quaternion
 from wsrender.robots import of_mujoco
 from wsrender.run.steps import Progress, execute
 
@@ -31,6 +33,7 @@ SamplingLike = Grid | Random | Sobol | BoundaryBiased | Converge | Mapping[str, 
 Function = TypeVar("Function", bound=Callable[..., Result])
 
 EXECUTION = ("progress", "threads", "chunk_size")
+POSES = (("points_m", "quats_wxyz"), ("position_m", "quat_wxyz"))  # which transforms may stand for
 SOURCES = ("left", "right", "master", "slave")
 _LENGTHS = ("base_m", "proximal_m", "distal_m", "limits_rad")
 
@@ -75,7 +78,7 @@ def document_of(analysis: str, given: dict[str, Any]) -> tuple[dict[str, Any], A
     ``sampling`` is None, and there, where the analysis takes one that is not given. Raises InputError, and ModelError
     for a robot that cannot be loaded.
     """
-    fields, robots = dict(given), None
+    fields, robots = _posed(analysis, given), None
     several = fields.get("robots") is not None
     if "robot" in fields and not (several and fields["robot"] is None):
         robots, fields = _of_one(fields)
@@ -90,6 +93,16 @@ def document_of(analysis: str, given: dict[str, Any]) -> tuple[dict[str, Any], A
         fields = _resumed(fields)
     fields.pop("resume", None)
     return {"analysis": analysis, **plain(fields)}, robots
+
+
+def _posed(analysis: str, given: dict[str, Any]) -> dict[str, Any]:
+    """The fields, with positions and quaternions of the transforms among them."""
+    fields = dict(given)
+    for names in POSES:
+        if names[0] in fields and names[1] in job_classes()[analysis].model_fields:
+            position, quat = position_and_quaternion(fields[names[0]], fields.get(names[1]), names)
+            fields |= {names[0]: position} | ({} if quat is None else {names[1]: quat})
+    return fields
 
 
 def _of_one(fields: dict[str, Any]) -> tuple[Robot | None, dict[str, Any]]:

@@ -136,7 +136,7 @@ def test_more_starts_find_more_and_seeds_matter():
     ("change", "field", "message"),
     [
         ({"quat_wxyz": [[1, 1, 0, 0]] * 3}, "quat_wxyz", "must be of unit length: row 0 has length 1.41421"),
-        ({"quat_wxyz": [[1, 0, 0, 0]]}, "quat_wxyz", "must have as many rows as position_m, 3, not 1"),
+        ({"quat_wxyz": [[1, 0, 0, 0]] * 2}, "quat_wxyz", "must have as many rows as position_m, 3, not 2"),
         ({"position_m": [[0, 0]]}, "position_m", "rows of 3 numbers"),
         ({"position_m": []}, "position_m", "at least 1"),
         ({"free_axis": "z", "quat_wxyz": None}, "free_axis", 'must not be given without "quat_wxyz"'),

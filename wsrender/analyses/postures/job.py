@@ -30,7 +30,8 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     position_m: Points
     """Positions of the tip in the world frame, rows of x, y, z, or a single one [m]."""
     quat_wxyz: Quaternions | None = None
-    """Orientations, a quaternion w, x, y, z of unit length for each position; null: any orientation will do."""
+    """Orientations, a quaternion w, x, y, z of unit length for each position, or one for all; null: any
+    orientation will do."""
     free_axis: Annotated[Literal["x", "y", "z"] | None, Field(exclude_if=is_none)] = None
     """Axis of the tip about which it may turn as it likes; null: none."""
     windings: Annotated[int, Field(ge=1, le=4096), BeforeValidator(integer)] = 1

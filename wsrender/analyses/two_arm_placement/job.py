@@ -35,7 +35,8 @@ class HandOver(Document):
     points_m: Points | None = None
     """Positions, rows of x, y, z [m]; null: a volume is given."""
     quats_wxyz: Quaternions | None = None
-    """Orientations, a quaternion w, x, y, z for each point; null: each point is tried with all of ``orientations``."""
+    """Orientations, a quaternion w, x, y, z for each point, or one for all; null: each point is tried with all of
+    ``orientations``."""
     volume: TargetVolume | None = None
     """Instead of points, the centres of cells that fill a volume, with its orientation or else all of them."""
     orientations: Count = 60
