@@ -16,8 +16,9 @@ FIRST_WRONG = "# Each line below is wrong."
 
 
 @pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed: pip install pyright[nodejs]")
-def test_thirty_wrong_calls_are_reported_and_no_right_one(tmp_path):
-    right, wrong = ((HERE / f"{name}_calls.py").read_text() for name in ("right", "wrong"))
+@pytest.mark.parametrize("calls", ["calls", "client_calls"])
+def test_thirty_wrong_calls_are_reported_and_no_right_one(calls, tmp_path):
+    right, wrong = ((HERE / f"{name}_{calls}.py").read_text() for name in ("right", "wrong"))
     lines = wrong.splitlines()
     expected = set(range(lines.index(FIRST_WRONG) + 2, len(lines) + 1))
     assert len(expected) == CALLS
