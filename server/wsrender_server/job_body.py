@@ -13,6 +13,7 @@ from fastapi import Request
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
 
 from wsrender.analyses.jobs import job_schema
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.problems import MOST_PROBLEMS, listed, path_text, worded
 from wsrender.documents.quantities import integer, real
 from wsrender.documents.reading import read_json
@@ -232,6 +233,7 @@ def body_schemas() -> dict[str, Any]:
     for name, model in analyses.items():
         flat = copy.deepcopy(parts[model])
         flat["properties"] |= options
+        flat.pop("examples", None)  # they stand at the body
         flat["title"] = flat["title"].replace("Job", "Submission")
         submissions[name] = flat["title"]
         parts[flat["title"]] = flat
@@ -248,30 +250,25 @@ def body_schemas() -> dict[str, Any]:
         "title": "JobSubmission",
         "description": "A job document, with labels, priority and timeout_s beside its fields if you like.",
         "anyOf": [*(_ref(name) for name in submissions.values()), _ref("WrappedSubmission")],
-        "examples": EXAMPLES,
     }
-    parts["JobDocument"]["examples"] = EXAMPLES[:1]
     _split_robot(parts)
     _move_defaults(parts)
     return json.loads(json.dumps(parts).replace("#/$defs/", "#/components/schemas/"))
 
 
-EXAMPLES = [
-    {
-        "analysis": "workspace",
-        "robot": {"library": "phantom_omni"},
-        "tip": "tool",
-        "sampling": {"method": "sobol", "count": 1000000},
-        "indices": ["manipulability", "inverse_condition_number"],
-        "task": "linear",
-    },
-    {
-        "job": {"analysis": "indices_at", "robot": {"library": "scara"}, "configurations": [[0.1, 0.2, 0.05, 0.0]]},
-        "labels": {"study": "wrist-1"},
-        "priority": 1,
-        "timeout_s": 60,
-    },
-]
+def submission_examples() -> dict[str, dict[str, Any]]:
+    """Bodies of submissions that run as they are, by name: one of each analysis, and one with options beside it."""
+    examples = {name: given for name, job in job_classes().items() if (given := _example(job)) is not None}
+    options = {"labels": {"study": "wrist-1"}, "priority": -1, "timeout_s": 60}
+    examples["with_options"] = {"job": examples["indices_at"], **options}
+    return {name: {"summary": name.replace("_", " ").capitalize(), "value": given} for name, given in examples.items()}
+
+
+def _example(job: type[BaseModel]) -> Any:
+    """What the schema of a class of jobs gives as its example; None: another package's may give none."""
+    extra = job.model_config.get("json_schema_extra")
+    examples = extra.get("examples") if isinstance(extra, dict) else None
+    return examples[0] if isinstance(examples, list) and examples else None
 
 
 def _split_robot(parts: dict[str, Any]) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, shown
@@ -44,3 +44,8 @@ class JobDocument(Document):
         if problem:
             raise ValidationError.from_exception_data(cls.__name__, [located("format", problem)])
         return data
+
+
+def example(**fields: Any) -> ConfigDict:
+    """What a class of jobs says in its schema: a document of a few seconds, which can be run as it is."""
+    return ConfigDict(json_schema_extra={"examples": [fields]})

@@ -44,7 +44,12 @@ def _six_points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     return points
 
 
-Three = Annotated[tuple[float, float, float], BeforeValidator(_three)]
+Three = Annotated[
+    tuple[float, float, float],
+    BeforeValidator(
+        _three, json_schema_input_type=tuple[PositiveNumber, PositiveNumber, PositiveNumber] | PositiveNumber
+    ),
+]
 SixPoints = Annotated[tuple[Vector, Vector, Vector, Vector, Vector, Vector] | None, BeforeValidator(_six_points)]
 
 
@@ -239,4 +244,6 @@ def _refuse_sourceless() -> None:
     raise ValueError(f'must have "library" (one of {quoted(LIBRARY)}) or "legs"')
 
 
-MechanismSpec = Annotated[StewartGough | SixPUS | Master4DOF | Delta | LegsMechanism, BeforeValidator(_mechanism)]
+_AnyMechanism = StewartGough | SixPUS | Master4DOF | Delta | LegsMechanism
+_Named = Literal["stewart_gough", "six_pus", "delta", "master_4dof"]
+MechanismSpec = Annotated[_AnyMechanism, BeforeValidator(_mechanism, json_schema_input_type=_AnyMechanism | _Named)]

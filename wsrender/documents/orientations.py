@@ -27,8 +27,10 @@ def _per_angle(value: Any) -> tuple[int, ...]:
 
 
 Angles = Annotated[tuple[float, float], BeforeValidator(_angles)]
-PerAngle = Annotated[tuple[int, int, int], BeforeValidator(_per_angle)]
 Levels = Annotated[int, Field(ge=1, le=1000), BeforeValidator(integer)]
+PerAngle = Annotated[
+    tuple[int, int, int], BeforeValidator(_per_angle, json_schema_input_type=tuple[Levels, Levels, Levels] | Levels)
+]
 
 
 class EulerRanges(Document):

@@ -31,10 +31,22 @@ MOST_NAMED, LONGEST_NAME = 100, 500  # of files that are missing
 FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values(), ZIP_TYPE]))
 ANY_TYPE = "application/octet-stream"  # what it is stands in its first bytes
 LOOKED_AT = 1024  # bytes
-EXAMPLE_MODEL = (
-    '<mujoco><worldbody><body><joint name="hinge" axis="0 0 1" range="-90 90"/><geom size="0.1"/>'
-    '<site name="tool" pos="0.5 0 0"/></body></worldbody></mujoco>'
-)
+EXAMPLE_MODELS = {
+    "mjcf": {
+        "summary": "A model as MJCF",
+        "value": '<mujoco><worldbody><body><joint name="hinge" axis="0 0 1" range="-90 90"/><geom size="0.1"/>'
+        '<site name="tool" pos="0.5 0 0"/></body></worldbody></mujoco>',
+    },
+    "urdf": {
+        "summary": "A model as URDF",
+        "value": '<robot name="hinge"><link name="base"/><link name="arm"/><link name="tool"/>'
+        '<joint name="hinge" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1.5" upper="1.5" effort="10" velocity="1"/></joint>'
+        '<joint name="flange" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.5 0 0"/></joint>'
+        "</robot>",
+    },
+    "points": {"summary": "A table of points as CSV", "value": "x,y,z\n0.4,0.2,0.3\n0.5,0.0,0.2\n"},
+}
 
 router = APIRouter(prefix="/v1")
 
@@ -163,7 +175,7 @@ def _type_of(body: bytes) -> str:
 _MODEL_BODY = {
     "requestBody": {
         "required": True,
-        "content": {ANY_TYPE: {"example": EXAMPLE_MODEL}},
+        "content": {ANY_TYPE: {"examples": EXAMPLE_MODELS}},
     }
 }
 

@@ -16,7 +16,7 @@ from wsrender.errors import InputError
 from wsrender_server.admission import Admitted
 from wsrender_server.auth import Principal, Reader, Submitter, check_priority
 from wsrender_server.hosts import address
-from wsrender_server.job_body import job_body
+from wsrender_server.job_body import job_body, submission_examples
 from wsrender_server.jobs.records import ENDED, JobRecord, JobState, Submission
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
@@ -47,9 +47,11 @@ class Estimate(View):
     """Time on this server [s]; null: little."""
 
 
-def _body_of(schema: str) -> dict[str, Any]:
-    reference = {"$ref": f"#/components/schemas/{schema}"}
-    return {"requestBody": {"required": True, "content": {"application/json": {"schema": reference}}}}
+def _submission() -> dict[str, Any]:
+    """The description of a body that is a submission."""
+    reference = {"$ref": "#/components/schemas/JobSubmission"}
+    content = {"schema": reference, "examples": submission_examples()}
+    return {"requestBody": {"required": True, "content": {"application/json": content}}}
 
 
 def _link(operation: str, **parameters: str) -> dict[str, Any]:
@@ -94,7 +96,7 @@ _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"t
         202: {"description": "Queued", "headers": _LOCATION | _SOON, "links": _JOB_LINKS},
         **problem_responses(401, 403, 404, 408, 409, 413, 415, 422, 429),
     },
-    openapi_extra=_body_of("JobSubmission") | {"parameters": [_IDEMPOTENCY_KEY]},
+    openapi_extra=_submission() | {"parameters": [_IDEMPOTENCY_KEY]},
 )
 async def submit_job(server: Server, principal: Submitter, request: Request, text: _Body, wait: _Wait = 0) -> Response:
     """Queue a job document; labels, priority and timeout_s may stand beside its fields.
@@ -127,7 +129,7 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
     summary="Check a job and estimate what it would take",
     response_model=Estimate,
     responses=problem_responses(401, 403, 404, 408, 409, 413, 415, 422, 429),
-    openapi_extra=_body_of("JobSubmission"),
+    openapi_extra=_submission(),
 )
 async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
     """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""

@@ -3,7 +3,8 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Body, Path, Response
+from fastapi.openapi.models import Example
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender_server.auth import Administrator, Scope
@@ -24,6 +25,12 @@ class KeyRequest(BaseModel):
     """What it may do."""
 
     model_config = ConfigDict(use_attribute_docstrings=True, extra="forbid")
+
+
+_EXAMPLES: dict[str, Example] = {
+    "submitter": {"summary": "One that submits jobs", "value": {"name": "ann"}},
+    "reader": {"summary": "One that only reads", "value": {"name": "dashboard", "scopes": ["read"]}},
+}
 
 
 class KeyView(View):
@@ -68,7 +75,12 @@ def list_keys(server: Server, principal: Administrator) -> Page[KeyView]:
     response_model=NewKey,
     responses=problem_responses(401, 403, 413, 422),
 )
-def create_key(server: Server, principal: Administrator, response: Response, key: KeyRequest) -> NewKey:
+def create_key(
+    server: Server,
+    principal: Administrator,
+    response: Response,
+    key: Annotated[KeyRequest, Body(openapi_examples=_EXAMPLES)],
+) -> NewKey:
     """The answer holds the secret, this once."""
     made, secret = server.store.create_key(key.name, key.scopes)
     response.headers["Cache-Control"] = "no-store"

@@ -35,12 +35,11 @@ OCTETS, GLB, JSON = "application/octet-stream", "model/gltf-binary", "applicatio
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 _ETAG = {"ETag": {"description": "Of the content.", "schema": {"type": "string"}}}
 _UNCHANGED = {304: {"description": "The client has it already", "headers": _ETAG}}
-_EXAMPLE = {"format": 1, "title": "ur5e", "robots": [], "volumes": [], "omitted": []}
 _MANIFEST_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "The manifest",
         "headers": _ETAG,
-        "content": {JSON: {"schema": {"$ref": "#/components/schemas/Manifest"}, "example": _EXAMPLE}},
+        "content": {JSON: {"schema": {"$ref": "#/components/schemas/Manifest"}}},
     },
     **_UNCHANGED,
 }
@@ -64,11 +63,12 @@ Channels = Annotated[
     Encoding,
     Query(description="What channels are named in: halves, bytes of 255 steps, or the numbers in single precision."),
 ]
+BLOB_NAME = "^[a-z0-9][a-z0-9._]{0,99}$"
 Blob = Annotated[
-    str,
-    PathParameter(
-        pattern="^[a-z0-9][a-z0-9._]{0,99}$", description="Name of a blob.", examples=["volume0.channel0.float16"]
-    ),
+    str, PathParameter(pattern=BLOB_NAME, description="Name of a blob.", examples=["volume0.channel0.float16"])
+]
+RobotBlob = Annotated[
+    str, PathParameter(pattern=BLOB_NAME, description="Name of a blob.", examples=["robot0.link0.glb"])
 ]
 RobotName = Annotated[str, PathParameter(description="Name of a library robot.", examples=["ur5e"])]
 
@@ -177,7 +177,9 @@ async def get_robot_view(server: Server, principal: Reader, request: Request, ro
     response_class=Response,
     responses=_BLOB_RESPONSES | problem_responses(401, 403, 404, 409, 416, 422, 429),
 )
-async def get_robot_blob(server: Server, principal: Reader, request: Request, robot: RobotName, blob: Blob) -> Response:
+async def get_robot_blob(
+    server: Server, principal: Reader, request: Request, robot: RobotName, blob: RobotBlob
+) -> Response:
     """A GLB file, its coordinates those of the frame that the manifest names for the link."""
     return await _blob(server, request, _of_library(robot), blob)
 

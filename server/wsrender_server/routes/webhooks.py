@@ -3,7 +3,8 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Body, Path, Response
+from fastapi.openapi.models import Example
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender_server.auth import Reader, Submitter
@@ -30,6 +31,15 @@ class WebhookRequest(BaseModel):
     """States of jobs that are told; by default those in which a job has ended."""
 
     model_config = ConfigDict(use_attribute_docstrings=True, extra="forbid")
+
+
+_EXAMPLES: dict[str, Example] = {
+    "ended": {"summary": "Of jobs that have ended", "value": {"url": "https://hooks.example.org/wsrender"}},
+    "chosen": {
+        "summary": "Of chosen states",
+        "value": {"url": "https://hooks.example.org/wsrender", "states": ["running", "succeeded", "failed"]},
+    },
+}
 
 
 class WebhookView(View):
@@ -95,7 +105,12 @@ def list_webhooks(server: Server, principal: Reader) -> Page[WebhookView]:
     response_model=NewWebhook,
     responses=problem_responses(401, 403, 409, 413, 422),
 )
-def create_webhook(server: Server, principal: Submitter, response: Response, webhook: WebhookRequest) -> NewWebhook:
+def create_webhook(
+    server: Server,
+    principal: Submitter,
+    response: Response,
+    webhook: Annotated[WebhookRequest, Body(openapi_examples=_EXAMPLES)],
+) -> NewWebhook:
     """From now on the states of one's jobs are posted there, signed with the secret, which the answer holds this once.
 
     A message comes at least once, and each time with the same webhook-id; its type is job. and the state, and its

@@ -4,12 +4,13 @@ import json
 import re
 
 import pytest
-from wsrender_server.job_body import EXAMPLES, body_schemas
+from wsrender_server.job_body import body_schemas, submission_examples
 
 from tests.server.http.idle_server import DOCUMENT
 from tests.server.http.openapi_names import FILE, names_of
 from wsrender.analyses.jobs import parse_job
 from wsrender.errors import DocumentError
+from wsrender.robots import library
 
 
 @pytest.fixture
@@ -66,7 +67,21 @@ def test_the_published_schema_is_that_of_the_documents():
     points = ([0.2, 0.1, 0.1], [[0.2, 0.1, 0.1]], [0.2, 0.1], [], [[0.2]], [0.1, [0.1, 0.1, 0.1]], 1.0)
     bodies += [{"analysis": "reachability", "robot": "scara", "points_m": each} for each in points]
     bodies += [DOCUMENT | {"task": task} for task in (["x", "rz"], ["x", "x"], [], "full")]
-    bodies += EXAMPLES
+    bodies += [each["value"] for each in submission_examples().values()]
+    numbers = (1, 0, [1, 2], [1, 2, 3], [1, 2, -3], "1", None)
+    bodies += [{"analysis": "five_bar", "base_m": 1, "proximal_m": 1, "distal_m": each} for each in numbers]
+    links = {"base_m": 1, "proximal_m": 1, "distal_m": 1}
+    limits = (None, [None, None], [[0, 1], None], [[0, 1]], 1)
+    bodies += [{"analysis": "five_bar", **links, "limits_rad": each} for each in limits]
+    parallel = {"analysis": "parallel_workspace", "mechanism": "six_pus"}
+    bodies += [parallel | {"mechanism": {"library": "six_pus", "link_m": each}} for each in numbers]
+    angles = ({"euler_xyz_deg": [[-10, 10]] * 3, "per_angle": each} for each in (2, [2, 2, 2], [2, 2], 0))
+    bodies += [parallel | {"kind": "total_orientation", "orientations": each} for each in angles]
+    mapped = {"analysis": "master_slave_mapping", "master": {"robot": "scara"}, "slave": {"points": [[0, 0, 0]]}}
+    bodies += [mapped | {"scale": each} for each in numbers]
+    design = submission_examples()["design_optimization"]["value"]
+    for pointers in ("/robot/dh/rows/1/a", ["/robot/dh/rows/1/a"], 5):
+        bodies.append(design | {"parameters": [design["parameters"][0] | {"pointers": pointers}]})
     pair = {"analysis": "shared_workspace", "robots": [{"robot": "scara"}, {"robot": "scara"}]}
     bodies += [pair | {"scan": {"robot": robot, "values": [0]}} for robot in (1, "scara", {"library": "scara"})]
     bodies += [pair, pair | {"robots": pair["robots"][:1]}, pair | {"robots": ["scara", "scara"]}]
@@ -74,7 +89,7 @@ def test_the_published_schema_is_that_of_the_documents():
         try:
             job = parse_job(body.get("job", body))
             robots = {arm.robot.library for arm in job.arms().values()}
-            allowed = robots <= {None, "scara", "phantom_omni"} and "x" not in getattr(job, "indices", ())
+            allowed = robots <= {None, *library.names()} and "x" not in getattr(job, "indices", ())
         except DocumentError:
             allowed = False
         assert validator.is_valid(body) == allowed, body

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm, ArmPath, robot_named
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import IndexOptions
 from wsrender.documents.placements import ANGLES, AnyMounting, PlacementSpace, TableEdge
 from wsrender.documents.quantities import Name, is_empty, is_none, number_rows, sequence
@@ -49,6 +49,13 @@ class BasePlacementJob(ListedTargets, Constrained, Arm, JobDocument):
     constraints and environment stand in the world. Of several ``robots`` each is placed by itself, and the result says
     which does best where.
     """
+
+    model_config = example(
+        analysis="base_placement",
+        robot={"library": "scara"},
+        points_m=[[0.3, -0.1, 0.0], [0.4, 0.0, 0.0], [0.3, 0.1, 0.0]],
+        over={"x_m": [-0.6, 1.2, 0.1], "y_m": [-0.6, 0.6, 0.1], "yaw_deg": [0, 360, 45]},
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = (*ListedTargets.long_fields, "weights")
 

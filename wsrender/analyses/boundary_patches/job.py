@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.quantities import Name, Number, integer
 
 FEWEST_CELLS, MOST_CELLS = 8, 256
@@ -19,6 +19,12 @@ class BoundaryPatchesJob(Arm, JobDocument):
     their limits that generate it. With more, they are fitted to points of the boundary that inverse kinematics finds.
     Each is the plane, sphere, cylinder, cone or torus that it is to within the points' error, or else a free form.
     """
+
+    model_config = example(
+        analysis="boundary_patches",
+        robot={"library": "spherical"},
+        cells=16,
+    )
 
     constraints_elsewhere: ClassVar[str] = 'boundaries are those of joint limits alone; "workspace" takes them'
 

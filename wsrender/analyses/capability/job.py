@@ -6,7 +6,7 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Device, Precision
 from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, VoxelSize, integer, is_none, real
 
@@ -23,6 +23,13 @@ class CapabilityJob(Constrained, Arm, JobDocument):
     Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
     Under constraints a direction is reached where they admit a configuration, and blocked where they reject all.
     """
+
+    model_config = example(
+        analysis="capability",
+        robot={"library": "ur5e"},
+        voxel_size_m=0.3,
+        directions=12,
+    )
 
     analysis: Literal["capability"] = "capability"
     """Name of the analysis."""

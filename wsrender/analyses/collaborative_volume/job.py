@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.constraints import ArmsConstraints, Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
 from wsrender.documents.quantities import Count, RelativeTolerance, Seed, integer, sequence
@@ -34,6 +34,16 @@ Cells = Annotated[tuple[int, int, int], BeforeValidator(_cells)]
 
 class CollaborativeVolumeJob(Constrained, JobDocument):
     """Volume that two arms reach together, by the body-elemental algorithm, and its true value beside it."""
+
+    model_config = example(
+        analysis="collaborative_volume",
+        left={"robot": {"library": "gao_6r"}},
+        right={"robot": {"library": "gao_6r", "placement": {"rpy_deg": [0, 0, 180]}}},
+        samples=4000,
+        seeds=2,
+        cells=[8, 8, 8],
+        refined_volume=0.1,
+    )
 
     analysis: Literal["collaborative_volume"] = "collaborative_volume"
     """Name of the analysis."""

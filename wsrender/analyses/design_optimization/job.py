@@ -23,7 +23,7 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from wsrender.analyses.jobs import parse_job
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.json_pointer import in_words_of, numbers_at, steps_of
 from wsrender.documents.problems import located, path_text, tagged
 from wsrender.documents.quantities import FileName, Name, Number, PositiveNumber, Seed, integer, quoted, real, sequence
@@ -99,7 +99,7 @@ def _coefficients(value: Any) -> dict[str, float]:
     return {str(name): real(number) for name, number in value.items()}
 
 
-Pointers = Annotated[tuple[str, ...], BeforeValidator(_pointers)]
+Pointers = Annotated[tuple[str, ...], BeforeValidator(_pointers, json_schema_input_type=tuple[str, ...] | str)]
 Bounds = Annotated[tuple[float, float], BeforeValidator(_bounds)]
 
 
@@ -238,6 +238,22 @@ AnalysedDocument = Annotated[
 
 class DesignOptimizationJob(JobDocument):
     """Find parameters of a robot or mechanism at which the result of another analysis is best."""
+
+    model_config = example(
+        analysis="design_optimization",
+        design={
+            "analysis": "workspace",
+            "robot": {"dh": {"convention": "standard", "rows": [{"a": 0.5}, {"a": 0.4, "limits_deg": [0, 150]}]}},
+            "sampling": {"method": "grid", "per_joint": 20},
+            "task": ["x", "y"],
+            "indices": ["manipulability"],
+            "voxel_size_m": 0.1,
+            "refined_volume": None,
+        },
+        parameters=[{"name": "forearm", "pointers": ["/robot/dh/rows/1/a"], "bounds": [0.2, 0.5]}],
+        objectives=[{"value": "/volume_m3/occupied"}],
+        search={"method": "sweep", "steps": 3},
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = ("evaluations",)
     constraints_elsewhere: ClassVar[str] = 'give them to the "design", where they hold for each'

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import LEAST_RANGE, WORKING_MODES
 from wsrender.documents.quantities import PositiveNumber, VoxelSize, distinct, integer, quoted, real, sequence
 
@@ -65,12 +65,25 @@ def _plane_rows(value: Any) -> tuple[tuple[float, ...], ...]:
     return rows
 
 
-Pair = Annotated[tuple[float, float], BeforeValidator(_pair)]
+Pair = Annotated[
+    tuple[float, float],
+    BeforeValidator(_pair, json_schema_input_type=tuple[PositiveNumber, PositiveNumber] | PositiveNumber),
+]
+_Interval = tuple[float, float] | None
 PlaneRows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_rows)]
 
 
 class FiveBarJob(JobDocument):
     """Workspace, conditioning, singularities and aspects of a planar five-bar with two actuated base joints."""
+
+    model_config = example(
+        analysis="five_bar",
+        base_m=1.0,
+        proximal_m=1.0,
+        distal_m=0.8,
+        voxel_size_m=0.1,
+        points_m=[[0.5, 0.9]],
+    )
 
     constraints_elsewhere: ClassVar[str] = (
         'its boundaries are those of joint limits alone; "parallel_workspace" takes "bodies" of two RUS legs whose '
@@ -85,10 +98,10 @@ class FiveBarJob(JobDocument):
     """L1: lengths of the links A C and B D [m]; one number stands for both."""
     distal_m: Pair
     """L2: lengths of the links C P and D P [m]; one number stands for both."""
-    limits_rad: Annotated[tuple[tuple[float, float] | None, tuple[float, float] | None], BeforeValidator(_limits)] = (
-        None,
-        None,
-    )
+    limits_rad: Annotated[
+        tuple[_Interval, _Interval],
+        BeforeValidator(_limits, json_schema_input_type=tuple[_Interval, _Interval] | None),
+    ] = (None, None)
     """Limits [low, high] of θ1 and θ2 [rad]; null: the joint turns freely."""
     working_modes: Annotated[tuple[Literal["++", "+-", "-+", "--"], ...], BeforeValidator(_modes)] = WORKING_MODES
     """Signs of sin(θ3 − θ1) and sin(θ4 − θ2)."""

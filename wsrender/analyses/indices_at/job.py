@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Configurations, IndexChoices, Precision
 from wsrender.documents.quantities import distinct, is_empty, sequence
 
@@ -27,6 +27,13 @@ Polytopes = Annotated[tuple[Kind, ...], Field(exclude_if=is_empty), BeforeValida
 
 class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     """Local indices at given configurations."""
+
+    model_config = example(
+        analysis="indices_at",
+        robot={"library": "ur5e"},
+        configurations=[[0.0, -1.5, 1.5, 0.0, 1.0, 0.0]],
+        indices=["manipulability", "inverse_condition_number"],
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = ("configurations",)
 

@@ -8,7 +8,7 @@ from pydantic import StrictBool
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Device, Precision
 from wsrender.documents.placements import Mounting, PlacementSpace
 from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed
@@ -30,6 +30,13 @@ class InverseReachabilityJob(Constrained, Arm, JobDocument):
     What ``base_placement`` decides of one target, kept base by base. Target, constraints and environment stand in the
     world.
     """
+
+    model_config = example(
+        analysis="inverse_reachability",
+        robot={"library": "ur5e"},
+        target={"position_m": [0.1, 0.05, 0.3], "rpy_deg": [180, 0, 0]},
+        over={"x_m": [-0.6, 1.2, 0.2], "y_m": [-0.9, 0.9, 0.2], "yaw_deg": [0, 360, 90]},
+    )
 
     analysis: Literal["inverse_reachability"] = "inverse_reachability"
     """Name of the analysis."""

@@ -5,7 +5,7 @@ from typing import Literal
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import VoxelSize
@@ -19,6 +19,13 @@ class KinetostaticFieldJob(Constrained, Arm, JobDocument):
     wherever a person leads it. The obstacles of the field push the tip, and reject nothing unless they stand in the
     ``environment`` too.
     """
+
+    model_config = example(
+        analysis="kinetostatic_field",
+        robot={"library": "phantom_omni"},
+        sampling={"method": "sobol", "count": 4096},
+        voxel_size_m=0.05,
+    )
 
     analysis: Literal["kinetostatic_field"] = "kinetostatic_field"
     """Name of the analysis."""

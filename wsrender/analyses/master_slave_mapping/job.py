@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, StrictBool
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.document import Document
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
@@ -133,6 +133,13 @@ class MappingSearch(Document):
 class MasterSlaveMappingJob(JobDocument):
     """Whether a slave's workspace, scaled, turned and shifted, lies in its master's, and the largest that does."""
 
+    model_config = example(
+        analysis="master_slave_mapping",
+        master={"robot": {"library": "phantom_omni"}, "sampling": {"method": "sobol", "count": 4096}},
+        slave={"points": [[0, 0, 0], [0.05, 0, 0], [0, 0.05, 0], [0, 0, 0.05], [0.05, 0.05, 0.05]]},
+        offsets_m=[[0.0, -0.1, 0.0], [0.1, 0.0, 0.1]],
+    )
+
     constraints_elsewhere: ClassVar[str] = 'give them to the "master" or the "slave", each has its own'
 
     analysis: Literal["master_slave_mapping"] = "master_slave_mapping"
@@ -141,7 +148,12 @@ class MasterSlaveMappingJob(JobDocument):
     """The robot that is moved by hand: {"robot": …, "sampling": …} or {"points": [[x, y, z], …]}."""
     slave: RobotOrPoints
     """The robot that follows."""
-    scale: Annotated[tuple[Number, Number, Number], BeforeValidator(_scale)] = (1.0, 1.0, 1.0)
+    scale: Annotated[
+        tuple[Number, Number, Number],
+        BeforeValidator(
+            _scale, json_schema_input_type=tuple[PositiveNumber, PositiveNumber, PositiveNumber] | PositiveNumber
+        ),
+    ] = (1.0, 1.0, 1.0)
     """S: scales along x, y, z of the master's world; one number stands for three."""
     rotation: Transform | None = None
     """R: rotation of the slave's points (its position_m must be 0); null: none."""

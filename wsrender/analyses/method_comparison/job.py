@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import VoxelSize, distinct, integer, sequence
@@ -33,6 +33,13 @@ def _subdivisions(value: Any) -> tuple[int, ...]:
 
 class MethodComparisonJob(JobDocument):
     """Volume, error and time of the four methods of Shah, Narayanan and Krovi (2010), over voxel and mesh sizes."""
+
+    model_config = example(
+        analysis="method_comparison",
+        mechanism={"library": "six_pus"},
+        voxel_sizes_m=[0.4],
+        ball_subdivisions=[1],
+    )
 
     constraints_elsewhere: ClassVar[str] = 'spheres alone bound its mechanisms; arms take them in "workspace"'
 

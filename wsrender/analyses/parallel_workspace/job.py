@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.documents.arm import Arm, ArmPath
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device, IndexOptions, IndicesOrNone, Precision, Task
 from wsrender.documents.orientations import MOST_ORIENTATIONS, Orientations
@@ -23,6 +23,13 @@ class ParallelWorkspaceJob(JobDocument):
     ``total_orientation``: positions at which all of a set of orientations are reached (Merlet 2006); ``dexterous``: the
     share of a set of orientations that is reached at each position.
     """
+
+    model_config = example(
+        analysis="parallel_workspace",
+        mechanism={"library": "stewart_gough", "length_m": [0.5, 0.8]},
+        voxel_size_m=0.1,
+        refined_volume=0.1,
+    )
 
     constraints_elsewhere: ClassVar[str] = 'bodies and what stands around are "bodies" of the "mechanism"'
 

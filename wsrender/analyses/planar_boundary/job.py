@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import PositiveNumber, integer, rows_of
 from wsrender.documents.sampling import BoundaryBiased, Converge, Sampling
@@ -19,6 +19,13 @@ class PlanarBoundaryJob(Arm, JobDocument):
 
     The arm's end effector must stay in a plane: joints turn about its normal or slide within it, or are locked.
     """
+
+    model_config = example(
+        analysis="planar_boundary",
+        robot={"library": "scara"},
+        sampling={"method": "random", "count": 5000, "locked": {"joint4": 0.0}},
+        cells=400,
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = ("points_m",)
     constraints_elsewhere: ClassVar[str] = 'boundaries are those of joint limits alone; "workspace" takes them'

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import IndexChoices, IndicesOrNone, Precision
 from wsrender.documents.quantities import Seed, integer, real
 from wsrender.documents.target_lists import UNIT, is_none
@@ -22,6 +22,13 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     pose has freedoms, curves of them. Constraints and environment say of
     each posture whether it is free.
     """
+
+    model_config = example(
+        analysis="postures",
+        robot={"library": "ur5e"},
+        position_m=[0.4, 0.2, 0.3],
+        quat_wxyz=[0.0, 1.0, 0.0, 0.0],
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = ("position_m", "quat_wxyz")
 

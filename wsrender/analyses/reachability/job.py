@@ -4,7 +4,7 @@ from typing import Literal
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.target_lists import Criteria, ListedTargets
 
 
@@ -13,6 +13,13 @@ class ReachabilityJob(ListedTargets, Constrained, Arm, JobDocument):
 
     Under constraints a target is reachable where a configuration is admitted, and blocked where all were rejected.
     """
+
+    model_config = example(
+        analysis="reachability",
+        robot={"library": "ur5e"},
+        points_m=[[0.4, 0.2, 0.3], [1.5, 0.0, 0.0]],
+        quats_wxyz=[[0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
+    )
 
     analysis: Literal["reachability"] = "reachability"
     """Name of the analysis."""

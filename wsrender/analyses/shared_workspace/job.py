@@ -4,12 +4,27 @@ from collections.abc import Iterator
 from typing import Literal
 
 from wsrender.documents.constraints import ArmsConstraints
+from wsrender.documents.format import example
 from wsrender.documents.quantities import RelativeTolerance
 from wsrender.documents.several_robots import PlacedRobot, PlacementScan, SeveralRobotsJob
 
 
 class SharedWorkspaceJob(SeveralRobotsJob):
     """What several robots reach together: union, shared volume, volume by number of robots, shared quality."""
+
+    model_config = example(
+        analysis="shared_workspace",
+        robots=[
+            {"robot": {"library": "scara"}, "sampling": {"method": "sobol", "count": 4096}},
+            {
+                "robot": {"library": "scara", "placement": {"position_m": [0.3, 0.0, 0.0]}},
+                "sampling": {"method": "sobol", "count": 4096},
+            },
+        ],
+        indices=["manipulability"],
+        task=["x", "y"],
+        voxel_size_m=0.05,
+    )
 
     analysis: Literal["shared_workspace"] = "shared_workspace"
     """Name of the analysis."""

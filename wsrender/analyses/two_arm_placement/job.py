@@ -11,7 +11,7 @@ from wsrender.analyses.registry import job_classes
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.constraints import ArmsConstraints, Constrained
 from wsrender.documents.document import Document
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.placements import Mounting, PlacementSpace
 from wsrender.documents.quantities import Count, is_none
 from wsrender.documents.target_lists import ListedTargets, TargetVolume
@@ -111,6 +111,16 @@ class TwoArmPlacementJob(ListedTargets, Constrained, JobDocument):
     come before those without, and of pairs that serve the same weight that is best which offers most of these poses.
     Targets, constraints, which either arm must satisfy, and environment stand in the world.
     """
+
+    model_config = example(
+        analysis="two_arm_placement",
+        targets=[
+            {"position_m": [0.4, -0.1, 0.3], "quat_wxyz": [0, 1, 0, 0], "name": "near"},
+            {"position_m": [1.6, 0.3, 0.2], "quat_wxyz": [0, 1, 0, 0], "weight": 2},
+        ],
+        first={"robot": {"library": "ur5e"}, "over": {"x_m": [-0.2, 0.4, 0.2]}},
+        second={"robot": {"library": "puma560"}, "over": {"x_m": [0.6, 2.4, 0.2], "y_m": [-0.4, 0.8, 0.2]}},
+    )
 
     long_fields: ClassVar[tuple[str, ...]] = ListedTargets.long_fields
 

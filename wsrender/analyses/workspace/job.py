@@ -7,7 +7,7 @@ from pydantic import Field, StrictBool, model_validator
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.format import JobDocument
+from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import IndexChoices, MapColumns, StatisticsOrNone, Surfaces
 from wsrender.documents.quantities import Count, Name, RelativeTolerance, VoxelSize, is_none
 from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
@@ -15,6 +15,15 @@ from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, 
 
 class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
     """Sample the joint space of a robot: distribution map, volume data and global indices."""
+
+    model_config = example(
+        analysis="workspace",
+        robot={"library": "phantom_omni"},
+        tip="tool",
+        sampling={"method": "sobol", "count": 1000000},
+        indices=["manipulability", "inverse_condition_number"],
+        task="linear",
+    )
 
     analysis: Literal["workspace"] = "workspace"
     """Name of the analysis."""
