@@ -1,14 +1,21 @@
 """The OpenAPI document, as generators of clients need it: whatever the settings, the same operations and names."""
 
+import json
+import re
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
+from pydantic.json_schema import models_json_schema
 
+from wsrender import __version__
+from wsrender.analyses.registry import result_classes
 from wsrender.results.view.manifest import MANIFEST
 from wsrender_server.job_body import body_schemas
 from wsrender_server.problems import Problem
 
+_SCHEMAS = "#/components/schemas/"
+_REFERENCE = re.compile(f'"{_SCHEMAS}([^"]+)"')
 BINARY = {"type": "string", "format": "binary"}
 _IF_NONE_MATCH = {
     "name": "If-None-Match",
@@ -32,6 +39,8 @@ def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
     schemas = document["components"]["schemas"]
     schemas |= body_schemas()
     schemas |= _view_schemas()
+    schemas |= result_schemas()
+    schemas["ResultDocument"]["allOf"] = [_as_its_analysis_says(name) for name in result_classes()]
     schemas["Problem"] = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas |= schemas["Problem"].pop("$defs", {})
     for unused in ("HTTPValidationError", "ValidationError"):
@@ -58,6 +67,23 @@ def _type_bodies(operation: dict[str, Any]) -> None:
             content["schema"] = {"type": "string"} if media_type.startswith("text/") else dict(BINARY)
         elif not content.get("schema"):  # a description of messages
             content["schema"] = {"type": "object"}
+
+
+def result_schemas() -> dict[str, Any]:
+    """A schema for the result documents of each analysis, such as ``WorkspaceResult``, and for their parts."""
+    classes = result_classes().values()
+    _, found = models_json_schema([(each, "validation") for each in classes], ref_template=f"{_SCHEMAS}{{model}}")
+    names = {name: name if name.endswith("Result") else f"Result{name}" for name in found["$defs"]}
+    # Generators call classes as titles say.
+    text = json.dumps({names[name]: part | {"title": names[name]} for name, part in found["$defs"].items()})
+    return json.loads(_REFERENCE.sub(lambda match: f'"{_SCHEMAS}{names[match[1]]}"', text))
+
+
+def _as_its_analysis_says(analysis: str) -> dict[str, Any]:
+    """That a document of an analysis, if this version has made it, keeps to the schema of these."""
+    own = {"properties": {"wsrender": {"const": __version__}}, "required": ["wsrender"]}
+    about = {"properties": {"analysis": {"const": analysis}, "provenance": own}, "required": ["analysis", "provenance"]}
+    return {"if": about, "then": {"$ref": f"{_SCHEMAS}{result_classes()[analysis].__name__}"}}
 
 
 def _view_schemas() -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import Any
 from wsrender.documents.document import Document
 from wsrender.errors import InputError
 from wsrender.extensions import load
+from wsrender.results.document import ResultDocument
 from wsrender.results.presentation import Presentation
 
 EXTENSIONS = "wsrender.analyses"  # entry points, loaded when the table is first read
@@ -23,19 +24,22 @@ class Entry:
     """An analysis: the class of its job, and what plans it, an ``Analysis`` (see `wsrender.analyses.contract`).
 
     Each may be ``"module:name"``: jobs are imported when the table is first read, what plans one when it is planned.
-    ``presentation`` says how its results are shown; None: as those of any analysis.
+    ``presentation`` says how its results are shown; None: as those of any analysis. ``result`` is the form of its
+    result documents, a class after `wsrender.results.document.ResultDocument`; None: only what all have is known.
     """
 
     job: str | type[Document]
     run: str | Callable[..., Any]
     presentation: str | Presentation | None = None
+    result: str | type[ResultDocument] | None = None
 
 
 def _own(name: str, job: str, run: str, presentation: str | None = "PRESENTATION") -> Entry:
     """An analysis of this package, in a folder of its name; ``run`` is in its ``run.py``, or says its module."""
     folder = f"{__name__.rpartition('.')[0]}.{name}"
     shown = None if presentation is None else f"{folder}.presentation:{presentation}"
-    return Entry(f"{folder}.job:{job}", f"{folder}.{run if ':' in run else f'run:{run}'}", shown)
+    result = f"{folder}.document:{job.removesuffix('Job')}Result"
+    return Entry(f"{folder}.job:{job}", f"{folder}.{run if ':' in run else f'run:{run}'}", shown, result)
 
 
 _ROWS = {
@@ -65,6 +69,12 @@ _ROWS = {
 def job_classes() -> dict[str, type[Document]]:
     """The class of the jobs of every analysis, by its name."""
     return {name: _loaded(entry.job) for name, entry in _table().items()}
+
+
+@cache
+def result_classes() -> dict[str, type[ResultDocument]]:
+    """The form of the result documents of every analysis that says it, by its name."""
+    return {name: _loaded(entry.result) for name, entry in _table().items() if entry.result is not None}
 
 
 def planned(job: Any, *robots: Any, resolved: dict[str, Any] | None = None) -> Any:
@@ -114,3 +124,6 @@ def _check(name: str, entry: Any, found: dict[str, Entry]) -> None:
             raise InputError("job", f"{job.__name__} must have the method {needed}(), as Arm has it")
     if not isinstance(shown := _loaded(entry.presentation), Presentation | None):
         raise InputError("presentation", f"must be a Presentation, not {type(shown).__name__}")
+    result = _loaded(entry.result)
+    if result is not None and not (isinstance(result, type) and issubclass(result, ResultDocument)):
+        raise InputError("result", f"must be a class of result documents, not {result!r}")

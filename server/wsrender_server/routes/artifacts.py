@@ -91,12 +91,17 @@ class HeadlineView(View):
 
 
 class ResultDocument(View):
-    """What an analysis has found; the fields beside these are those of the analysis."""
+    """What an analysis has found; the fields beside these are those of the analysis.
+
+    Of one that this version has computed they are as its schema says, `WorkspaceResult` and so on.
+    """
 
     model_config = ConfigDict(use_attribute_docstrings=True, extra="allow")
 
     format: int = Field(json_schema_extra={"const": FORMAT})
     """Format of the document; results of earlier versions are answered in this one."""
+    analysis: str = Field(examples=["workspace"])
+    """Name of the analysis."""
     headline: HeadlineView
     """The number that the analysis is about."""
     warnings: list[WarningView]

@@ -7,7 +7,7 @@ from wsrender_server.local_server import LocalServer
 
 from tests.server.end_to_end.acceptance import PATIENCE_S
 from tests.server.openapi_examples import bodies, examples_of, schema_examples
-from wsrender.analyses.registry import job_classes
+from wsrender.analyses.registry import job_classes, result_classes
 
 WAIT_S = 60
 SECRET = "an-examples-secret-of-forty-characters-xx"
@@ -98,6 +98,14 @@ def test_examples_keep_to_the_schemas_that_they_stand_at(document):
 
 def test_every_job_succeeds(jobs):
     assert {name: job["error"] for name, job in jobs.items() if job["state"] != "succeeded"} == {}
+
+
+def test_every_result_keeps_to_its_schema(http, document, jobs):
+    for job in jobs.values():
+        answer = http.get(f"/v1/jobs/{job['id']}/result")
+        keeps_to_its_schema(document, document["paths"]["/v1/jobs/{job_id}/result"]["get"], answer)
+        own = {"$ref": f"#/components/schemas/{result_classes()[job['analysis']].__name__}"}
+        assert Draft202012Validator({**own, "components": document["components"]}).is_valid(answer.json())
 
 
 def test_every_other_body_is_accepted(http, document, jobs):
