@@ -14,6 +14,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from tests import ten_minutes
 from tests.collision import many_labels
 from tests.engine import closed_form_poses, free_joint_sweeps, open_wrist_poses
 from tests.reach import near_limits, posture_peers, refutations, self_motion_sweeps
@@ -37,6 +38,7 @@ PIECES = {
     "soak": soak,
     "webhooks": webhook_deliveries,
     "largest_picture": largest_picture,
+    "ten_minutes": ten_minutes,
 }
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from tests.snippets import CLONE, blocks, run
 
-PAGES = sorted(CLONE.glob("docs/*/*.md"))
+PAGES = [page for page in sorted(CLONE.glob("docs/*/*.md")) if page.stem != "ten_minutes"]  # which test_ten_minutes has
 
 
 def with_blocks(language):
