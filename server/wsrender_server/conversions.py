@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
+from weakref import WeakValueDictionary
 
 from wsrender import __version__
 from wsrender.notices import entries
@@ -37,9 +38,10 @@ class ConvertedFiles:
         self._files = files
         self._folder = files.root / "converted"
         self._side_process = side_process
-        self._turn = asyncio.Lock()
+        self._turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        self._looking = asyncio.Lock()
 
-    async def get(self, source: Path, record: ArtifactRecord, format: str) -> tuple[Path, str]:
+    async def get(self, owner: str, source: Path, record: ArtifactRecord, format: str) -> tuple[Path, str]:
         """File and SHA-256 of an artifact in another format.
 
         Raises HttpProblem 404 for a format that it does not have, DiskFull.
@@ -50,21 +52,23 @@ class ConvertedFiles:
             choices = ", ".join(allowed) or "none"
             detail = f"{record.name} does not come as {format}; other formats: {choices}"
             raise HttpProblem(404, detail, "format_not_available", errors=[("format", detail)])
-        return await self._made(record.sha256, format, partial(convert, source, stored, allowed[format]))
+        return await self._made(owner, record.sha256, format, partial(convert, source, stored, allowed[format]))
 
-    async def renewed(self, source: Path, record: ArtifactRecord, version: str) -> tuple[Path, str]:
+    async def renewed(self, owner: str, source: Path, record: ArtifactRecord, version: str) -> tuple[Path, str]:
         """File and SHA-256 of the result document of another ``version`` in today's form. Raises DiskFull."""
-        return await self._made(record.sha256, "renewed", partial(renew, source, version))
+        return await self._made(owner, record.sha256, "renewed", partial(renew, source, version))
 
-    async def _made(self, source_sha256: str, kind: str, write: Callable[[Path], str]) -> tuple[Path, str]:
+    async def _made(self, owner: str, source_sha256: str, kind: str, write: Callable[[Path], str]) -> tuple[Path, str]:
         """What the side process has written, or writes now, of a source."""
-        async with self._turn:  # equal requests find the file that the first of them makes
-            kept = await asyncio.to_thread(self._kept, source_sha256, kind)
+        async with self._turns.setdefault(f"{owner} {source_sha256} {kind}", asyncio.Lock()):  # made once
+            async with self._looking:
+                kept = await asyncio.to_thread(self._kept, source_sha256, kind)
             if kept is None:
                 await asyncio.to_thread(self._files.check_space)
                 target = self._folder / f".{uuid.uuid4().hex}.{kind}"
-                sha256 = await self._side_process.run(write, target, timeout_s=TIMEOUT_S)
-                kept = await asyncio.to_thread(self._keep, target, source_sha256, sha256, kind)
+                sha256 = await self._side_process.run(write, target, owner=owner, timeout_s=TIMEOUT_S)
+                async with self._looking:
+                    kept = await asyncio.to_thread(self._keep, target, source_sha256, sha256, kind)
         return kept
 
     def _kept(self, source_sha256: str, format: str) -> tuple[Path, str] | None:

@@ -24,8 +24,8 @@ from wsrender.robots.uploaded import MODELS_VARIABLE
 from wsrender_server.jobs.child_process import resident_bytes, settle_in
 from wsrender_server.problems import HttpProblem, problem_of_error, refusal
 
-MOST_WAITING = 32
-MOST_WAITING_OF_OWNER = 16
+MOST_WAITING = 32  # of an owner, for a side process
+MOST_WAITING_OF_OWNER = 16  # for plans
 LOOK_S = 0.1
 TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes with the child
 PATIENCE_S = 50.0  # the first plan of a kind of robot compiles kernels; many proxies give up after 60
@@ -36,7 +36,7 @@ Estimated = dict[str, float | None]
 
 
 class SideProcess:
-    """Runs module-level functions one after another in a child that is started when first needed.
+    """Runs module-level functions one after another in a child that is started when first needed; owners take turns.
 
     A function that crashes, is too slow, or takes more than ``max_memory_bytes`` costs its own request only. It finds
     uploaded models in the folder ``models``. Close it with ``close``.
@@ -48,17 +48,25 @@ class SideProcess:
         self._pid = RawArray("q", 1)
         self._pool: ProcessPool | None = None
         self._lock = threading.Lock()
-        self._waiting = 0
+        self._waiting: Counter[str] = Counter()
+        self._turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
-    async def run(self, function: Callable[..., Any], *arguments: Any, timeout_s: float = 60.0) -> Any:
+    async def run(self, function: Callable[..., Any], *arguments: Any, owner: str = "", timeout_s: float = 60.0) -> Any:
         """What ``function(*arguments)`` returns; arguments and value are pickled.
 
         Raises HttpProblem 409 for the function's own errors (the request kept to its schema) and for one that costs too
-        much, 429 where many wait.
+        much, 429 where many of the owner's wait: however many these are, others are answered after one of them.
         """
-        if self._waiting >= MOST_WAITING:
-            raise HttpProblem(429, "too many requests of this kind are waiting", "busy", retryable=True)
-        self._waiting += 1
+        if self._waiting[owner] >= MOST_WAITING:
+            raise HttpProblem(429, "too many of your requests of this kind are waiting", "busy", retryable=True)
+        self._waiting[owner] += 1
+        try:
+            async with self._turns.setdefault(owner, asyncio.Lock()):
+                return await self._result(function, arguments, timeout_s)
+        finally:
+            self._waiting -= Counter([owner])
+
+    async def _result(self, function: Callable[..., Any], arguments: tuple[Any, ...], timeout_s: float) -> Any:
         try:
             future = self._open_pool().schedule(_guarded, args=(function, arguments), timeout=timeout_s)
             value, problem = await self._watched(future)
@@ -66,8 +74,6 @@ class SideProcess:
             raise HttpProblem(409, f"took longer than {timeout_s:g} s", "too_slow") from error
         except ProcessExpired as error:
             raise HttpProblem(409, "the process that worked on this request crashed", "crashed") from error
-        finally:
-            self._waiting -= 1
         if problem is not None:
             raise refusal(problem, 409 if problem["status"] == 422 else problem["status"])
         return value

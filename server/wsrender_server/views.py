@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakValueDictionary
 
 from pydantic import TypeAdapter
 
@@ -68,7 +69,8 @@ class Views:
         self._files = files
         self._root = files.root / "views"
         self._side_process = side_process
-        self._turn = asyncio.Lock()
+        self._turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        self._making_room = asyncio.Lock()
         self._warming: asyncio.Task[None] | None = None
 
     def warm(self) -> None:
@@ -80,26 +82,29 @@ class Views:
         with contextlib.suppress(HttpProblem):  # who asks for a view will be told
             await self._side_process.run(load, timeout_s=TIMEOUT_S)
 
-    async def manifest(self, shown: Shown, encoding: Encoding) -> Path:
+    async def manifest(self, owner: str, shown: Shown, encoding: Encoding) -> Path:
         """The file of a manifest whose channels are in an encoding. Raises HttpProblem, DiskFull."""
-        return await self._made(shown, f"{MANIFEST}{encoding}.json")
+        return await self._made(owner, shown, f"{MANIFEST}{encoding}.json")
 
-    async def blob(self, shown: Shown, name: str) -> Path:
+    async def blob(self, owner: str, shown: Shown, name: str) -> Path:
         """The file of a blob. Raises HttpProblem for one that there is not, DiskFull."""
-        return await self._made(shown, name)
+        return await self._made(owner, shown, name)
 
-    async def preview(self, edited: bytes) -> bytes:
+    async def preview(self, owner: str, edited: bytes) -> bytes:
         """The view of a robot or an environment that is edited, as one message. Raises HttpProblem."""
-        return await self._side_process.run(preview, edited, timeout_s=TIMEOUT_S)
+        return await self._side_process.run(preview, edited, owner=owner, timeout_s=TIMEOUT_S)
 
-    async def _made(self, shown: Shown, name: str) -> Path:
+    async def _made(self, owner: str, shown: Shown, name: str) -> Path:
         folder = self._root / shown.key
         path = folder / name
         if not await asyncio.to_thread(_used, path):
-            async with self._turn:  # equal requests find the file that the first of them makes
+            # Requests of a view come one after another: equal ones find the file that the first of them makes.
+            async with self._turns.setdefault(f"{owner} {shown.key}", asyncio.Lock()):
                 if not await asyncio.to_thread(_used, path):
-                    await asyncio.to_thread(self._make_room, folder)
-                    await self._side_process.run(write_part, shown, str(folder), name, timeout_s=TIMEOUT_S)
+                    async with self._making_room:
+                        await asyncio.to_thread(self._make_room, folder)
+                    part = shown, str(folder), name
+                    await self._side_process.run(write_part, *part, owner=owner, timeout_s=TIMEOUT_S)
         return path
 
     def _make_room(self, folder: Path) -> None:

@@ -1,6 +1,7 @@
 """What the served page does where something is wrong: no graphics, keys, a server that goes, hostile names."""
 
 import json
+import time
 import zlib
 from base64 import urlsafe_b64encode
 from pathlib import Path
@@ -121,6 +122,29 @@ def test_a_server_that_goes_is_said_and_found_again(chromium, tmp_path: Path) ->
         page.close()
     said = [each for each in view.errors + jobs.errors if "ERR_CONNECTION_REFUSED" not in each]
     assert said == []
+
+
+FLOOD = """(path) => { window.flood = Promise.all(Array.from({length: 240}, (_, k) =>
+  fetch(k % 3 ? path + "/view?channels=" + ["uint8", "float32"][k % 2] : "v1/robots:view", k % 3 ? {} : {
+    method: "POST", headers: {"Content-Type": "application/json"},
+    body: JSON.stringify({robot: {library: "ur5e", placement: {position_m: [k / 1000, 0, 0]}}})
+  }).then((each) => each.status, () => 0))).then((found) => { window.answered = found; }); }"""
+
+
+def test_a_page_that_floods_its_server_keeps_nobody_waiting(watched: Watched, client: ws.Client, finished: str) -> None:
+    """Hundreds of questions at once: another is answered meanwhile, and each of them in the end, or told to wait."""
+    page = watched.page
+    page.goto(watched.url)
+    page.evaluate(FLOOD, f"v1/jobs/{finished}")
+    waits = []
+    for _ in range(20):
+        began = time.monotonic()
+        assert httpx2.get(f"{watched.url}/healthz", timeout=30).status_code == 200
+        assert client.job(finished).state == "succeeded"
+        waits.append(time.monotonic() - began)
+    assert sorted(waits)[10] < 1, waits
+    until(lambda: page.evaluate("window.answered !== undefined"), 240)
+    assert set(page.evaluate("answered")) <= {200, 429}
 
 
 def packed(content: bytes) -> str:

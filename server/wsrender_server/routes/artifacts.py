@@ -139,7 +139,7 @@ async def get_result(server: Server, job: Finished, request: Request) -> Respons
     sha256 = record.sha256
     with not_found_if_gone(RESULT, path):
         if job.version != __version__:
-            path, sha256 = await readable(server.converted.renewed(path, record, job.version))
+            path, sha256 = await readable(server.converted.renewed(job.owner, path, record, job.version))
         return await run_in_threadpool(file_response, request, path, sha256, "application/json")
 
 
@@ -177,7 +177,7 @@ async def get_artifact(
     sha256, media_type, own_name = record.sha256, record.media_type, name
     with not_found_if_gone(name, path):
         if format is not None and not name.endswith(f".{format}"):
-            path, sha256 = await server.converted.get(path, record, format)
+            path, sha256 = await server.converted.get(job.owner, path, record, format)
             own_name = f"{name.rpartition('.')[0]}.{format}"
             media_type = formats.media_type(own_name)
         return await run_in_threadpool(file_response, request, path, sha256, media_type, own_name)
@@ -232,10 +232,10 @@ async def drawn(
     """A picture of the result's files, or of those ``instead`` of them, with more ``headers``."""
     records, result = await run_in_threadpool(_listed, server, job)
     with not_found_if_gone(RESULT, Path(result)):
-        wanted = await readable(server.side_process.run(files_for_plot, result, plot, records))
+        wanted = await readable(server.side_process.run(files_for_plot, result, plot, records, owner=job.owner))
     files = {**await run_in_threadpool(files_of, server, job, wanted), **instead}
     with not_found_if_gone(", ".join(files), *map(Path, (result, *files.values()))):
-        content = await or_404(server.side_process.run(draw, result, files, plot, format, options))
+        content = await or_404(server.side_process.run(draw, result, files, plot, format, options, owner=job.owner))
     return content_response(request, content, format.media_type, headers)
 
 

@@ -162,7 +162,7 @@ async def get_volume(
     sha256, media_type = record.sha256, record.media_type
     with not_found_if_gone(record.name, path):
         if format != _KEPT:
-            path, sha256 = await server.converted.get(path, record, format)
+            path, sha256 = await server.converted.get(job.owner, path, record, format)
             media_type = formats.by_ending("volume", f"{volume}.{format}").media_type
         return await run_in_threadpool(file_response, request, path, sha256, media_type, f"{volume}.{format}")
 
@@ -201,7 +201,7 @@ async def get_slice(
         options = {"axis": axis, axis: at, "index": index, "statistic": statistic}
         return await drawn(request, server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)}, BY_ACCEPT)
     with not_found_if_gone(record.name, path):
-        making = server.side_process.run(slice_content, str(path), axis, at, index, statistic, kind)
+        making = server.side_process.run(slice_content, str(path), axis, at, index, statistic, kind, owner=job.owner)
         content, headers = await or_404(making)
     return content_response(request, content, SLICES[kind], {**headers, **BY_ACCEPT})
 
@@ -236,7 +236,9 @@ async def get_table(
     """
     record, path = await run_in_threadpool(data_of, server, job, "table", table)
     with not_found_if_gone(record.name, path):
-        making = server.side_process.run(table_content, str(path), table, columns, offset, limit, format)
+        making = server.side_process.run(
+            table_content, str(path), table, columns, offset, limit, format, owner=job.owner
+        )
         content = await or_404(making)
     return content_response(request, content, TEXTS[format])
 
@@ -268,7 +270,9 @@ async def get_histogram(
     """
     record, path = await run_in_threadpool(_samples_of, server, job)
     with not_found_if_gone(record.name, path):
-        making = server.side_process.run(histogram_content, str(path), index, bins, lower, upper, format)
+        making = server.side_process.run(
+            histogram_content, str(path), index, bins, lower, upper, format, owner=job.owner
+        )
         content = await or_404(making)
     return content_response(request, content, TEXTS[format])
 

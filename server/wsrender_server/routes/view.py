@@ -114,7 +114,7 @@ async def get_view(server: Server, job: Finished, request: Request, channels: Ch
     shown = await run_in_threadpool(_of_job, server, job)
 
     async def made() -> Path:
-        return await server.views.manifest(shown, channels)
+        return await server.views.manifest(job.owner, shown, channels)
 
     return await _answer(request, made, shown, f"manifest.{channels}", JSON)
 
@@ -132,7 +132,7 @@ async def get_view_blob(server: Server, job: Finished, request: Request, blob: B
     names.
     """
     shown = await run_in_threadpool(_of_job, server, job)
-    return await _blob(server, request, shown, blob)
+    return await _blob(server, job.owner, request, shown, blob)
 
 
 @router.get(
@@ -152,7 +152,9 @@ async def get_voxel(
     """What the voxel that holds a point holds, as the file has it; 404 for a point outside the volume."""
     record, path = await run_in_threadpool(data_of, server, job, "volume", volume)
     with not_found_if_gone(record.name, path):
-        return VoxelView.model_validate(await or_404(server.side_process.run(voxel_values, str(path), (x, y, z))))
+        return VoxelView.model_validate(
+            await or_404(server.side_process.run(voxel_values, str(path), (x, y, z), owner=job.owner))
+        )
 
 
 @router.get(
@@ -166,7 +168,7 @@ async def get_robot_view(server: Server, principal: Reader, request: Request, ro
     shown = _of_library(robot)
 
     async def made() -> Path:
-        return await server.views.manifest(shown, "float16")
+        return await server.views.manifest(principal.owner, shown, "float16")
 
     return await _answer(request, made, shown, "manifest.float16", JSON)
 
@@ -181,7 +183,7 @@ async def get_robot_blob(
     server: Server, principal: Reader, request: Request, robot: RobotName, blob: RobotBlob
 ) -> Response:
     """A GLB file, its coordinates those of the frame that the manifest names for the link."""
-    return await _blob(server, request, _of_library(robot), blob)
+    return await _blob(server, principal.owner, request, _of_library(robot), blob)
 
 
 @router.post(
@@ -201,12 +203,12 @@ async def view_edited(server: Server, principal: Submitter, text: Annotated[byte
     `blobs` (names and sizes in bytes), padded by spaces to a multiple of 4; then the blobs, one after the other.
     """
     await server.admissions.check_edited(principal.owner, text)
-    return Response(await server.views.preview(text), media_type=OCTETS)
+    return Response(await server.views.preview(principal.owner, text), media_type=OCTETS)
 
 
-async def _blob(server: Parts, request: Request, shown: Shown, blob: str) -> Response:
+async def _blob(server: Parts, owner: str, request: Request, shown: Shown, blob: str) -> Response:
     async def made() -> Path:
-        return await server.views.blob(shown, blob)
+        return await server.views.blob(owner, shown, blob)
 
     return await _answer(request, made, shown, blob, GLB if blob.endswith(".glb") else OCTETS)
 

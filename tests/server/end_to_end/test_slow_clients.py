@@ -4,6 +4,7 @@ import socket
 import time
 from contextlib import ExitStack
 
+import httpx2
 import pytest
 from wsrender_server.local_server import LocalServer
 
@@ -79,6 +80,22 @@ def test_a_body_that_keeps_coming_may_take_longer(opened):
         time.sleep(2 * TIMEOUT_S / pieces)
         connection.sendall(body[number * size : (number + 1) * size])
     assert b" 422 " in connection.recv(1 << 16)
+
+
+def test_answers_that_nobody_takes_in_keep_nobody_waiting(server, opened):
+    """Connections that ask again and again for a megabyte, and read none of it, and one that follows events."""
+    asked = b"GET /viewer/viewer.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 30
+    connections = [opened(asked) for _ in range(MOST - 5)]
+    with ws.Client(server.url) as client:
+        for _ in range(20):
+            began = time.monotonic()
+            assert list(client.jobs()) == []
+            assert time.monotonic() - began < 5  # of a busy machine
+        whole = httpx2.get(f"{server.url}/viewer/viewer.js", timeout=10).content
+    assert len(connections[0].recv(1 << 20)) > 0 and len(whole) > 500_000  # whose answers had begun
+    for connection in connections:
+        connection.close()
+    wait_until(lambda: httpx2.get(f"{server.url}/healthz", timeout=5).status_code == 200)
 
 
 def test_a_client_has_so_many_connections(opened):

@@ -84,6 +84,26 @@ def test_many_waiting_are_refused(process):
     asyncio.run(flood())
 
 
+def test_others_are_answered_while_one_owner_floods(process):
+    """After the one of the flood that runs, however many of it wait."""
+
+    async def flood():
+        begun = asyncio.get_running_loop().time()
+        sleeps = [asyncio.ensure_future(process.run(time.sleep, 0.5, owner="ann")) for _ in range(50)]
+        await asyncio.sleep(0.1)
+        assert await process.run(abs, -3, owner="bob") == 3
+        assert asyncio.get_running_loop().time() - begun < 0.5 * 4
+        for each in sleeps:
+            each.cancel()
+        told = await asyncio.gather(*sleeps, return_exceptions=True)
+        refused = [each for each in told if isinstance(each, HttpProblem)]
+        assert len(refused) == 18 and {each.code for each in refused} == {"busy"}
+        assert await process.run(abs, -4, owner="ann") == 4  # nothing of it is left
+
+    asyncio.run(process.run(abs, 0))  # it runs
+    asyncio.run(asyncio.wait_for(flood(), 60))
+
+
 def validated(client):
     """The answer once planning has ended."""
     while True:
