@@ -2,10 +2,12 @@
 
 import base64
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from wsrender import notebook
@@ -81,6 +83,41 @@ def test_every_part_has_a_card(result, planar):
     table = Table({"x": np.arange(1000.0), "name": np.array([EVIL] * 1000)}, {"x": "m"})
     read = Read(card_of(table).html())
     assert "x [m]" in read.text and "1,000 rows" in read.text and EVIL in read.text and "script" not in read.tags
+
+
+def test_what_functions_find_has_a_card():
+    arm = ws.load_robot("ur5e")
+    q = [0.3, -1.4, 1.6, -0.4, 1.1, 0.2]
+    T = arm.forward_kinematics(q)[0]
+    w, x, y, z = (Rotation.from_matrix(T[:3, :3]).as_quat()[[3, 0, 1, 2]]).tolist()
+    postures = ws.postures(arm, T[:3, 3], [w, x, y, z])
+    read = Read(card_of(postures).html())
+    assert f"{len(postures)} postures of 1 pose" in read.text and f"{postures.count:,}, whole turns" in read.text
+    assert postures.evidence in read.text and f"{postures.sigma_min[0]:.3g}"[:4] in read.text
+    assert read.tags.count("tr") >= 1 + min(len(postures), 8)
+    none = Read(card_of(ws.postures(arm, [[9.0, 0, 0]], [[1.0, 0, 0, 0]])).html())
+    assert "0 postures of 1 pose" in none.text
+    found = ws.reachable(arm, [T[:3, 3], [9, 0, 0], [0, 0, 9]])
+    read = Read(card_of(found).html())
+    assert "3 targets" in read.text and "2 unreachable, 1 reachable" in read.text and "2 out of reach" in read.text
+    assert "distance [m]" in read.text and "angle [rad]" in read.text
+    turning = dict.fromkeys(arm.joint_names, 2.0)
+    arm = ws.load_robot("ur5e", velocity_limits=turning)
+    shape = ws.polytope(arm, q, "velocity")
+    read = Read(html := card_of(shape).html())
+    assert f"{shape.radius:.4g} m/s" in read.text and f"{len(shape.vertices)} vertices" in read.text
+    assert f"{shape.vertices[:, 0].max():.4g} m/s" in read.text and len(pictures(html)) == 1
+    line = replace(shape, vertices=shape.vertices[:1], triangles=np.empty((0, 3), int), dimension=1)
+    assert "radius" in Read(html := card_of(line).html()).text and pictures(html) == []  # nothing with an area
+    nothing = replace(line, vertices=np.empty((0, 3)), dimension=0)
+    assert "nothing is allowed" in Read(card_of(nothing).html()).text
+
+
+def test_in_a_notebook_they_are_shown(monkeypatch):
+    found = ws.reachable("scara", [[9, 0, 0]])
+    assert found._repr_mimebundle_() == {"text/plain": repr(found)}
+    monkeypatch.setattr(notebook, "in_notebook", lambda: True)
+    assert found._repr_mimebundle_().keys() == {"text/plain", "text/html"}
 
 
 def test_nothing_that_a_name_holds_becomes_a_tag():

@@ -17,6 +17,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
 from wsrender.keywords import keywords
+from wsrender.notebook import mime_bundle
 from wsrender.pipeline.constraints.region import Point
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.chain_indices import ChainAsked
@@ -59,6 +60,7 @@ class Polytope:
     reach: float
 
     __repr__ = short_repr
+    _repr_mimebundle_ = mime_bundle
 
     @property
     def unit(self) -> str:

@@ -24,6 +24,7 @@ from wsrender.engine import (
 )
 from wsrender.errors import InputError
 from wsrender.keywords import keywords
+from wsrender.notebook import mime_bundle
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
@@ -86,6 +87,7 @@ class Postures:
     curves: tuple[SelfMotion | None, ...]
 
     __repr__ = short_repr
+    _repr_mimebundle_ = mime_bundle
 
     def __len__(self) -> int:
         return len(self.configurations)

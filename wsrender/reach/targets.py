@@ -16,6 +16,7 @@ from wsrender.documents.target_lists import AXES, TargetTable
 from wsrender.engine import thread_count
 from wsrender.errors import DocumentError, InputError
 from wsrender.keywords import keywords
+from wsrender.notebook import mime_bundle
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.progress import RunProgress
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
@@ -69,6 +70,7 @@ class Reachability:
     rejected: np.ndarray | None = None
 
     __repr__ = short_repr
+    _repr_mimebundle_ = mime_bundle
 
 
 @keywords

@@ -9,13 +9,13 @@ from wsrender.errors import InputError
 from wsrender.indices.units import pretty_unit
 from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.faces_of_surface import shaded
-from wsrender.results.drawing.okabe_ito import BLUE, GREEN, VERMILION
+from wsrender.results.drawing.okabe_ito import POLYTOPES
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import draw_arm
 from wsrender.results.drawing.style import paper_style, three_digits
 from wsrender.results.drawing.view import add_legend, new_view
 
-_COLORS = {"velocity": to_rgb(BLUE), "force": to_rgb(VERMILION), "acceleration": to_rgb(GREEN)}
+_COLORS = {kind: to_rgb(color) for kind, color in POLYTOPES.items()}
 _VEIL = 0.5  # opacity, behind which the arm is seen
 
 

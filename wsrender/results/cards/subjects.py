@@ -1,4 +1,4 @@
-"""The cards of robots, results, volumes, tables, maps and boundaries."""
+"""The cards of robots, results, volumes, tables, maps, boundaries, postures, targets and polytopes."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial, singledispatch
@@ -7,6 +7,10 @@ from typing import Any
 import numpy as np
 
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
+from wsrender.geometry.polytopes import Polytope
+from wsrender.indices.units import pretty_unit
+from wsrender.reach.posture_sets import Postures
+from wsrender.reach.targets import Reachability
 from wsrender.results import drawing
 from wsrender.results.cards.card_html import Card
 from wsrender.results.export.columns import columns_of
@@ -28,7 +32,7 @@ _INDEX_COLUMNS = ("unit", "minimum", "maximum", "joint_mean", "workspace_mean")
 
 
 def card_of(what: Any) -> Card:
-    """The card of a robot, result, volume, table, map or boundary."""
+    """The card of a robot, result, volume, table, map or boundary, of postures, targets or a polytope."""
     return _result(what) if hasattr(what, "document") else _of_data(what)
 
 
@@ -158,3 +162,70 @@ def _outline(boundary: ExactBoundary) -> ShownPicture:
 
     figure = outline(boundary.segments, filled=boundary.dimension == 2)
     return ShownPicture("boundary", drawing.png(figure, DOTS), "The boundary, in the plane of the arm")
+
+
+@_of_data.register
+def _postures(found: Postures) -> Card:
+    poses = len(found.complete)
+    facts = {"configurations": f"{found.count:,}, whole turns of hinges counted apart"}
+    if found.family.any():
+        facts["families"] = f"{found.family.sum():,}: the arm can move while the tip stays"
+    if (blocked := found.reasons != "").any():
+        facts["blocked"] = _counted(found.reasons[blocked])
+    if poses:
+        facts["complete"] = f"at {found.complete.sum():,} of {poses:,} {_plural('pose', poses)}: {found.evidence}"
+    columns = {"pose": found.pose, **_joints(found.configurations), "sigma_min": found.sigma_min}
+    columns |= {"windings": found.windings} | ({"reason": found.reasons} if blocked.any() else {})
+    title = f"{len(found):,} {_plural('posture', len(found))} of {poses:,} {_plural('pose', poses)}"
+    return Card(title, (), (), facts, [table_html(Table(columns), ROWS)] if len(found) else [])
+
+
+@_of_data.register
+def _reachability(found: Reachability) -> Card:
+    count = len(found.labels)
+    facts = {"labels": _counted(found.labels)} if count else {}
+    if (told := found.reasons[found.reasons != ""]).size:
+        facts |= {"reasons": _counted(told), "proven": f"{found.proven.sum():,}, that they are not reached"}
+    columns = {"label": found.labels, "reason": found.reasons, **_joints(found.configurations)}
+    columns |= {"distance": found.residual_m, "angle": found.residual_rad}  # that are left
+    units = {"distance": "m", "angle": "rad"}
+    table = table_html(Table(columns, units), ROWS)
+    return Card(f"{count:,} {_plural('target', count)}", (), (), facts, [table] if count else [])
+
+
+def _joints(configurations: np.ndarray) -> dict[str, np.ndarray]:
+    """A column for each joint, whose names and units are not known."""
+    return {f"q{k + 1}": column for k, column in enumerate(configurations.T)}
+
+
+def _counted(names: np.ndarray) -> str:
+    """``12 reachable, 3 blocked``, the most frequent first."""
+    found = zip(*np.unique(names.astype(str), return_counts=True), strict=True)
+    return ", ".join(f"{number:,} {name}" for name, number in sorted(found, key=lambda each: -each[1]))
+
+
+def _plural(word: str, count: int) -> str:
+    return word if count == 1 else f"{word}s"
+
+
+@_of_data.register
+def _polytope(found: Polytope) -> Card:
+    unit, (x, y, z) = pretty_unit(found.unit), found.position.tolist()
+    facts = {"radius": f"{found.radius:.4g} {unit}: in every direction that the task asks for"}
+    facts |= {"dimension": f"{found.dimension}, {len(found.vertices):,} vertices, {len(found.facets):,} facets"}
+    facts |= {"tip": f"({x:.4g}, {y:.4g}, {z:.4g}) m"}
+    if len(found.vertices):
+        low, high = found.vertices.min(axis=0), found.vertices.max(axis=0)
+        facts |= {axis: f"{low[k]:.4g} … {high[k]:.4g} {unit}" for k, axis in enumerate("xyz")}
+    else:
+        facts["vertices"] = "none: nothing is allowed, not even 0"
+    pictures = [partial(_shaped, found)] if found.dimension >= 2 else []
+    return Card(f"Polytope of {found.kind} in world axes", (), (), facts, pictures=pictures)
+
+
+def _shaped(found: Polytope) -> ShownPicture:
+    from wsrender.results.drawing.polytope import polytope
+
+    return ShownPicture(
+        "polytope", drawing.png(polytope(found), DOTS), f"What is allowed, in {pretty_unit(found.unit)}"
+    )

@@ -6,3 +6,5 @@ ORANGE, SKY_BLUE, YELLOW = "#e69f00", "#56b4e9", "#f0e442"
 # Of targets, of poses, and of which of two arms serves a target.
 VERDICTS = {"reachable": GREEN, "blocked": BLUE, "unreachable": VERMILION, "undecided": ORANGE}
 VERDICTS |= {"first": BLUE, "second": PURPLE, "both": GREEN, "free": GREEN, "none": VERMILION}
+
+POLYTOPES = {"velocity": BLUE, "force": VERMILION, "acceleration": GREEN}
