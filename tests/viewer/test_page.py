@@ -310,6 +310,39 @@ def test_axe_finds_no_serious_fault(watched: Watched, finished: str, place: str)
     assert serious_faults(page) == []
 
 
+@pytest.mark.parametrize("watched", [{"viewport": {"width": 390, "height": 844}}], indirect=True)
+def test_on_a_telephone_all_is_within_reach(watched: Watched, finished: str, narrower: str) -> None:
+    """Every button of the bars stands within the screen, and the panels open there."""
+    page, wide = watched.page, 390
+    for place in ("/", "/new", f"/job/{finished}", f"/compare/{finished}/{narrower}"):
+        page.goto(f"{watched.url}/#{place}")
+        bar = page.get_by_role(
+            "button", name="Show all" if finished in place else "New job" if place == "/" else "Submit"
+        )
+        bar.first.wait_for()
+        assert page.evaluate("document.documentElement.scrollWidth") <= wide
+        for each in page.locator(".top a, .top button, .top select, .viewer .bar button").all():
+            box = each.bounding_box()
+            assert box["x"] >= 0 and box["x"] + box["width"] <= wide, (place, each.inner_text())
+    opened(watched, f"/job/{finished}")
+    for name, panel in (("Look", "What it looks like"), ("Explore", "Explore")):
+        page.get_by_role("button", name=name, exact=True).click()
+        box = page.get_by_role("group", name=panel).bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= wide
+        page.get_by_role("button", name=name, exact=True).click()
+
+
+def test_a_job_that_failed_says_why_in_the_list(watched: Watched, client: ws.Client) -> None:
+    floor = {"items": [{"shape": "box", "name": "block", "size_m": [1, 1, 1], "position_m": [0, 0, 0]}]}
+    job = client.submit(JOB | {"environment": floor}).wait()
+    assert job.state == "failed"
+    watched.page.goto(watched.url)
+    row = watched.page.locator(f"tr[data-job='{job.id}']")
+    why = job.record["error"]["detail"]
+    row.get_by_text(why).wait_for()
+    assert "block" in why
+
+
 def test_names_are_text(watched: Watched, client: ws.Client) -> None:
     name = "<img src=x onerror=alert(1)>"
     rows = [{"a": 0.4, "limits": [-2, 2], "name": f"{name}{k}"} for k in range(3)]

@@ -167,7 +167,12 @@ function Delete({ short, onDelete }: { short: string; onDelete(): void }) {
 
 function Bar({ job }: { job: Job }) {
   if (job.state === "queued") return <span class="help">waits</span>;
-  if (ENDED.includes(job.state)) return <span class="help">{job.finished_at && job.started_at ? seconds((Date.parse(job.finished_at) - Date.parse(job.started_at)) / 1000) : ""}</span>;
+  if (ENDED.includes(job.state)) return (
+    <>
+      <span class="help">{job.finished_at && job.started_at ? seconds((Date.parse(job.finished_at) - Date.parse(job.started_at)) / 1000) : ""}</span>
+      {job.error && <span class="why problem" title={job.error.detail}>{job.error.detail}</span>}
+    </>
+  );
   const { fraction, eta_s, message: doing } = job.progress;
   return (
     <span class="progress">
