@@ -98,6 +98,8 @@ def test_titles_say_in_words_how_samples_are_spread_and_how_a_voxel_is_approache
         assert sampling_text({"robot": {"name": "arm"}, "sampling": sampling}) == f"arm · 1,200 samples ({words})"
     one = {"samples": 1, "method": "given"}
     assert sampling_text({"robot": {"name": "arm"}, "sampling": one}) == "arm · 1 sample (as given)"
+    admitted = {"samples": {"drawn": 9, "admitted": 8, "rejected": {"self_collision": 1, "region": 0}}}
+    assert sampling_text({"robot": {"name": "arm"}} | admitted) == "arm · admitted by self collision, region"
     capability = {"directions": 50, "approach_axis": "-x"}
     title = sampling_text({"analysis": "capability", "robot": {"name": "arm"}, "capability": capability})
     assert title == "arm · 50 directions of approach by the tip's -x axis"

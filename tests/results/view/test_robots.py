@@ -8,7 +8,7 @@ import trimesh
 from scipy.spatial import KDTree
 
 import wsrender as ws
-from wsrender.results.view import robot_view
+from wsrender.results.view import Edited, edited_view, robot_view
 from wsrender.results.view.robots import arms_of
 from wsrender.results.view.stance import stance
 from wsrender.robot import link_shapes
@@ -74,6 +74,16 @@ def _same(points, others):
         return False
     apart = [KDTree(to).query(of)[0].max() for of, to in ((points, others), (others, points))]
     return max(apart) < CLOSE
+
+
+def test_a_floor_is_as_large_as_what_stands_on_it():
+    """Larger than the arm reaches, by a fifth at most: else all else is small."""
+    edited = Edited(robot={"library": "ur5e"}, environment={"items": [{"shape": "half_space", "name": "floor"}]})
+    view, reach = edited_view(edited), ws.load_robot("ur5e").chain.reach
+    (mesh,) = (each for each in view.manifest["meshes"] if each["role"] == "environment")
+    bounds = trimesh.load(io.BytesIO(view.blobs[mesh["geometry"]["blob"]]), file_type="glb", process=False).bounds
+    assert (bounds[1, :2] >= reach).all() and (bounds[1, :2] <= 1.2 * reach + 1e-6).all()
+    assert np.allclose(bounds[0, :2], -bounds[1, :2])
 
 
 def test_limits_home_and_names():

@@ -27,7 +27,7 @@ def sampling_text(document: dict[str, Any]) -> str:
         method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} sample{'' if sampling['samples'] == 1 else 's'}{method}")
     if constraints := dict.fromkeys(name for _, samples in _admissions(document) for name in samples["rejected"]):
-        parts.append(f"admitted by {', '.join(constraints)}")
+        parts.append(f"admitted by {', '.join(constraints).replace('_', ' ')}")
     return " · ".join([*parts, *presentation_of(document).title(document)])
 
 

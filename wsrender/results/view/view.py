@@ -47,7 +47,7 @@ _ROLES: dict[str, Role] = {
     "boundary": "boundary",
     "refined": "refined",
 }
-_ROOM = 0.3  # of the edges of what is shown, around it
+_ROOM = 0.1  # of the edges of what is shown, around it
 _SMALLEST = 0.5  # [m] half the edge of the box around a robot alone
 
 

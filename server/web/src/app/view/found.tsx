@@ -14,7 +14,7 @@ export function Found({ model }: { model: ViewModel }) {
     <Section title="Selected" open>
       {!voxel ? (
         <>
-          {model.shown && <p class="help">Click a voxel of the volume: its values come here{model.canAsk ? ", and the robot moves there where samples are kept" : ""}.</p>}
+          {model.shown && <p class="help">Click a voxel of the volume: its values come here{model.canAsk && model.manifest.value!.robots.length ? ", and the robot moves there where samples are kept" : ""}.</p>}
           {model.canAsk && model.manifest.value!.maps.length > 0 && <p class="help">Click a cell of a map: the robot stands there.</p>}
         </>
       ) : (

@@ -101,8 +101,8 @@ export function Colors({ model }: { model: ViewModel }) {
         <Select label="Scale" value={range.scale} options={[{ value: "linear", label: "linear" }, { value: "log", label: "logarithmic" }]} onChange={(scale) => put({ scale })} />
         <div class="line"><span>Range</span>
           <span class="pair">
-            <Value label="Lower end of the range" value={range.low} placeholder={number(channel.minimum)} onChange={(low) => put({ low })} />
-            <Value label="Upper end of the range" value={range.high} placeholder={number(channel.maximum)} onChange={(high) => put({ high })} />
+            <Value label="Lower end of the range" value={range.low} placeholder={number(channel.minimum, 3)} onChange={(low) => put({ low })} />
+            <Value label="Upper end of the range" value={range.high} placeholder={number(channel.maximum, 3)} onChange={(high) => put({ high })} />
           </span>
         </div>
         <Slide label="From" name="Lower end" value={range.low ?? channel.minimum} low={channel.minimum} high={channel.maximum} onChange={(low) => put({ low })} />
