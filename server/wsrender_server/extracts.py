@@ -150,16 +150,16 @@ def table_content(
 def histogram_content(
     table_file: str, index: str | None, bins: int | None, lower: float | None, upper: float | None, format: TextFormat
 ) -> bytes:
-    """How the values of an index are spread over the samples in a file, as `histogram_data` has it.
+    """How the finite values of an index are spread over the samples in a file, as `histogram_data` has it.
 
     Raises InputError for an index that the samples do not have, and for limits between which nothing can be.
     """
-    from wsrender.results.drawing.distribution import histogram_data, write_histograms
+    from wsrender.results.drawing.distribution import finite, histogram_data, write_histograms
     from wsrender.results.export.parquet import index_values
 
     name, unit, values = index_values(table_file, index)
-    if not len(values):
-        raise InputError("index", f"no sample was kept that has a value of {name}")
+    if not len(values := finite(values)):
+        raise InputError("index", f"no sample was kept that has a finite value of {name}")
     edges, share = histogram_data(values, bins, lower, upper)
     if format == "csv":
         file = io.StringIO(newline="")

@@ -312,11 +312,12 @@ class ComputationStore:
     def _end(self, session: Session, computation_id: str, error: dict[str, Any] | None) -> list[str]:
         """The jobs that waited succeed, or fail with an error; those being canceled are canceled."""
         jobs = self._jobs(session, computation_id, [*LIVE, JobState.CANCELING])
+        resolved = session.get_one(Computation, computation_id).resolved
         for job in jobs:
             if job.state == JobState.CANCELING:
                 move(session, job, JobState.CANCELED)
             elif error is None:
-                finish(session, job)
+                finish(session, job, resolved)
             else:
                 move(session, job, JobState.FAILED, error)
         return [job.id for job in jobs]

@@ -323,17 +323,27 @@ def subscribe(session: Session, job: Job, computation: Computation) -> None:
     computation.priority = max(computation.priority, job.priority)
     if computation.state == ComputationState.SUCCEEDED:
         computation.used_at = datetime.now(UTC)
-        finish(session, job)
+        finish(session, job, computation.resolved)
     elif computation.state == ComputationState.RUNNING:
         enter(session, job, JobState.RUNNING)
     else:
         enter(session, job, JobState.QUEUED)
 
 
-def finish(session: Session, job: Job) -> None:
-    """Let a job succeed; one that never ran, answered from the cache, starts and ends at once."""
-    done = job.progress["samples_total"] if job.progress else None
-    job.progress = asdict(Progress(1.0, done or 0, done, message="finished"))
+def finish(session: Session, job: Job, resolved: Mapping[str, Any] | None) -> None:
+    """Let a job succeed; one that never ran, answered from the cache, starts and ends at once.
+
+    Its samples are those of the plan that was ``resolved``, whether or not anybody looked while it ran.
+    """
+    told = Progress(**(job.progress or {}))
+    done, total = told.samples_total or 0, told.samples_total
+    if resolved:
+        done = sum(count for _, count in resolved["shards"])
+        total = done or None
+        if resolved.get("iterates"):  # nobody knew beforehand how many there would be
+            same = select(Job.progress).where(Job.computation_id == job.computation_id, Job.progress.is_not(None))
+            done, total = max([done, *(each["samples_done"] for each in session.scalars(same) if each)]), None
+    job.progress = asdict(Progress(1.0, done, total, message="finished"))
     job.started_at = job.started_at or datetime.now(UTC)
     enter(session, job, JobState.SUCCEEDED)
 

@@ -113,7 +113,7 @@ class HistogramView(View):
     unit: str
     """Its unit."""
     samples: int
-    """Samples that were looked at."""
+    """Samples that have a finite value; others, such as those with NaN, are not counted."""
     mean: float
     """Mean of the values."""
     below: float

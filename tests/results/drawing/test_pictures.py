@@ -16,7 +16,7 @@ from wsrender.analyses.robot_comparison.pictures import side_by_side
 from wsrender.errors import InputError
 from wsrender.results import drawing
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, space_around
-from wsrender.results.drawing.distribution import histogram_data
+from wsrender.results.drawing.distribution import finite, histogram_data
 from wsrender.results.drawing.style import DPI
 from wsrender.results.drawing.view import PLACE
 from wsrender.volume.distribution_map import DistributionMap
@@ -197,6 +197,24 @@ def test_long_names_below_histograms_do_not_overlap():
     figure.draw_without_rendering()
     first, second = (axes.xaxis.label.get_window_extent() for axes in figure.axes)
     assert first.x1 < second.x0
+
+
+def test_histograms_are_of_finite_values(tmp_path):
+    """Samples that have none, as of a user's index, are in no interval; an index without any has words instead."""
+    samples = random_map(100, names=("some", "all", "none"))
+    samples.indices["some"][::2] = np.nan
+    samples.indices["some"][1] = np.inf
+    samples.indices["none"][:] = np.nan
+    edges, share = histogram_data(finite(samples.indices["some"]))
+    kept = samples.indices["some"][3::2]
+    assert (edges[0], edges[-1]) == (kept.min(), kept.max()) and share.sum() == pytest.approx(1)
+    some, all_of, none = drawing.histogram(samples).axes[:3]
+    assert some.patches and all_of.patches and not none.patches
+    assert [text.get_text() for text in none.texts] == ["no finite value"]
+    drawing.write_histogram_csv(samples, tmp_path / "histogram.csv")
+    rows = [row.split(",") for row in (tmp_path / "histogram.csv").read_text().splitlines()[1:]]
+    assert {row[0] for row in rows} == {"some", "all"}
+    assert sum(float(row[4]) for row in rows if row[0] == "some") == pytest.approx(1)
 
 
 def test_histogram_csv_holds_what_is_drawn(tmp_path):

@@ -11,6 +11,7 @@ from wsrender_server import extracts
 import wsrender as ws
 from tests.golden.files import job_of
 from tests.results.export.sample_data import random_map, random_volume
+from tests.server.http.answers import broken, validator_of
 from tests.server.http.idle_server import problem_of
 from wsrender.results.result import Result
 from wsrender.volume.table import CellGrid, Table
@@ -380,3 +381,45 @@ def test_answers_keep_to_their_schemas(client, kept):
         assert set(answer) == set(document["components"]["schemas"][schema]["properties"])
         assert not validator.is_valid({name: value for name, value in answer.items() if name != list(answer)[-1]})
         assert json.loads(json.dumps(answer)) == answer
+
+
+def test_answers_of_another_form_do_not(client, kept):
+    document = client.get("/openapi.json").json()
+    of = "/v1/jobs/{job_id}"
+    job, found = kept
+    x, y, z = (found.volume.origin_m + found.volume.voxel_size_m / 2).tolist()
+    for path, table, query in (
+        ("volume/slice", "", {"format": "json"}),
+        ("volume/slice", "", {"format": "json", "statistic": "count", "axis": "x"}),
+        ("tables/{table}", "sample", {}),
+        ("tables/{table}", "odd things", {}),
+        ("histogram", "", {}),
+        ("volume/voxel", "", {"x": x, "y": y, "z": z}),
+    ):
+        answer = client.get(f"{job}/{path.format(table=table)}", params=query)
+        assert answer.status_code == 200, answer.text
+        validator = validator_of(document, f"{of}/{path}", "get", 200)
+        assert [error.message for error in validator.iter_errors(answer.json())] == []
+        for changed in broken(answer.json()):
+            assert not validator.is_valid(changed), (path, {*changed})
+
+
+def test_a_histogram_counts_finite_values(client, submit, jobs, tmp_path):
+    samples = random_map(100)
+    values = samples.indices["manipulability"]
+    values[:40] = np.nan
+    Result({"analysis": "workspace", "warnings": []}, sample=samples).save(tmp_path / "out")
+    job = submit()
+    jobs.complete(job["id"], tmp_path / "out")
+    path = f"/v1/jobs/{job['id']}"
+    got = client.get(f"{path}/histogram").json()
+    assert got["samples"] == 60 and got["mean"] == pytest.approx(values[40:].mean(dtype=np.float64))
+    assert sum(got["share"]) == pytest.approx(1) and got["edges"][0] == pytest.approx(values[40:].min())
+    assert client.get(f"{path}/plots/histogram").status_code == 200
+    values[:] = np.nan
+    Result({"analysis": "workspace", "warnings": []}, sample=samples).save(tmp_path / "none")
+    job = submit(voxel_size_m=0.06)
+    jobs.complete(job["id"], tmp_path / "none")
+    problem = problem_of(client.get(f"/v1/jobs/{job['id']}/histogram"), 404)
+    assert "finite value of manipulability" in problem["detail"]
+    assert client.get(f"/v1/jobs/{job['id']}/plots/histogram").status_code == 200

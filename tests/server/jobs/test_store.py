@@ -55,6 +55,30 @@ def test_a_submitted_job_is_queued_and_complete(store, document):
     assert job.progress == Progress() and job.started_at is None and job.created_at.tzinfo is not None
 
 
+@pytest.mark.parametrize(
+    ("settled", "reported", "expected"),
+    [
+        ({"shards": [[0, 30], [30, 10], [40, 0]], "iterates": False}, None, (40, 40)),
+        ({"shards": [[0, 30], [30, 10]], "iterates": False}, Progress(0.5, 20, 90), (40, 40)),
+        ({"shards": [[0, 0]], "iterates": False}, None, (0, None)),
+        ({"shards": [[0, 30]], "iterates": True}, Progress(0.0, 70, None), (70, None)),
+        (None, Progress(0.5, 20, 40), (40, 40)),
+    ],
+)
+def test_an_ended_job_says_its_samples(store, document, settled, reported, expected):
+    """Though it was so fast that nobody looked; and so does an equal one, which the cache answers."""
+    job, computation = running(store, document)
+    if settled:
+        store.settle(computation, settled, "cpu:x86")
+    if reported:
+        store.report({computation: reported})
+    complete(store, computation)
+    store.set_targets({"auto": "cpu:x86", "cpu": "cpu:x86"} if settled else {})
+    for ended in (store.get("ann", job), *([store.submit("ann", document).job] if settled else [])):
+        assert ended.state == JobState.SUCCEEDED
+        assert (ended.progress.samples_done, ended.progress.samples_total) == expected
+
+
 def test_a_job_lives_through_its_states_with_one_event_each(store, document):
     job, computation = running(store, document)
     store.report({computation: Progress(0.25, 10, 40, 5.0, 6.0, "samples")})

@@ -51,7 +51,11 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: Head
 
 
 def _draw(axes: Axes, values: np.ndarray) -> None:
-    """Bars and mean; one bar with one number where all values are the same."""
+    """Bars and mean of the finite values; one bar with one number where they are the same."""
+    if not len(values := finite(values)):
+        axes.set(xticks=[], yticks=[])
+        axes.text(0.5, 0.5, "no finite value", transform=axes.transAxes, ha="center", fontsize=8, color=GREY)
+        return
     edges, share = histogram_data(values)
     low, high = float(edges[0]), float(edges[-1])
     mean = float(values.mean(dtype=np.float64))
@@ -79,9 +83,9 @@ def _in_width(label: str) -> str:
 
 def write_histogram_csv(samples: DistributionMap, path: str | Path) -> None:
     """Write what ``histogram`` shows: index, unit, lower and upper edge, share of the samples."""
-    found = ((name, samples.units.get(name, ""), values) for name, values in samples.indices.items())
+    found = ((name, samples.units.get(name, ""), finite(values)) for name, values in samples.indices.items())
     with Path(path).open("w", newline="", encoding="utf-8") as file:
-        write_histograms(file, ((name, unit, *histogram_data(values)) for name, unit, values in found))
+        write_histograms(file, ((name, unit, *histogram_data(values)) for name, unit, values in found if len(values)))
 
 
 def write_histograms(file: TextIO, histograms: Iterable[tuple[str, str, np.ndarray, np.ndarray]]) -> None:
@@ -93,10 +97,15 @@ def write_histograms(file: TextIO, histograms: Iterable[tuple[str, str, np.ndarr
             writer.writerow([name, unit, low, high, part])
 
 
+def finite(values: np.ndarray) -> np.ndarray:
+    """Those of the values (N,) of an index that are finite, (M,): others, such as NaN, are in no interval."""
+    return values[np.isfinite(values)]
+
+
 def histogram_data(
     values: np.ndarray, bins: int | None = None, lower: float | None = None, upper: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (51,) in the unit of the index and share of the values (50,) in each interval; fewer of few values.
+    """Edges (51,) in the unit of the index and share of `finite` values (50,) in each interval; fewer of few values.
 
     ``bins``: how many intervals instead; ``lower`` and ``upper``: the first and last edge, by default the least and the
     largest value. Values that are the same but for rounding are one interval: (2,) and (1,). Shares are of all values.
