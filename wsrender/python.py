@@ -780,7 +780,7 @@ def master_slave_mapping(
         document.
     ``scale``: S: scales along x, y, z of the master's world; one number stands for three.
     ``rotation``: R: rotation of the slave's points (its position_m must be 0); None: none.
-    ``offsets_m``: Offsets [m] that are compared: slave' = S R slave + offset.
+    ``offsets_m``: Offsets [m], a list or a single one, that are compared: slave' = S R slave + offset.
     ``containment``: What decides whether a point lies in a workspace.
     ``search``: Search of the largest scale, and optionally offset; None: the mapping is only tested.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
@@ -912,8 +912,8 @@ def five_bar(
     voxel_size_m: float | None = None,
     joint_steps: int = 180,
     levels: Sequence[float] | np.ndarray = (1.25, 1.5, 2.0, 3.0, 5.0, 10.0),
-    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray = (),
-    joint_angles_rad: Sequence[Sequence[float] | np.ndarray] | np.ndarray = (),
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | ArrayFile | Mapping[str, Any] = (),
+    joint_angles_rad: Sequence[Sequence[float] | np.ndarray] | np.ndarray | ArrayFile | Mapping[str, Any] = (),
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
@@ -925,8 +925,10 @@ def five_bar(
     ``voxel_size_m``: Edge of the cells of the Cartesian maps [m]; None: a 250th of the workspace's box.
     ``joint_steps``: Cells of the joint-space maps in a turn of an actuated joint.
     ``levels``: Condition numbers whose iso-curves are traced.
-    ``points_m``: Points [x, y] whose postures in every working mode are given, with their indices [m].
-    ``joint_angles_rad``: Pairs [θ1, θ2] whose postures in both assembly modes are given, with their indices [rad].
+    ``points_m``: Points [x, y] whose postures in every working mode are given, with their indices, at most 10,000 [m];
+        or a file of them, {"path": "points.csv"}.
+    ``joint_angles_rad``: Pairs [θ1, θ2] whose postures in both assembly modes are given, with their indices, at most
+        10,000 [rad]; or a file of them.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
@@ -946,7 +948,7 @@ def planar_boundary(
     cells: int | None = None,
     line_tolerance_m2: float | None = None,
     arc_tolerance_m4: float | None = None,
-    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray = (),
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | ArrayFile | Mapping[str, Any] = (),
     device: str = "auto",
     progress: Progress | bool | None = None,
     threads: int | None = None,
@@ -969,7 +971,8 @@ def planar_boundary(
     ``arc_tolerance_m4``: TOLA: largest mean of (r² − R²)² of boundary cells about an arc [m⁴]; None: by the cells'
         width.
     ``points_m``: Points to be found inside or outside, with the nearest point of the boundary: rows of two coordinates
-        in the plane [m], x and y of the world for an arm that moves in that plane.
+        in the plane [m], x and y of the world for an arm that moves in that plane; or a file of them, {"path":
+        "points.npy"}.
     ``device``: Where the samples are evaluated: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.

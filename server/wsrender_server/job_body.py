@@ -327,7 +327,9 @@ def _tighten_scene(part: dict[str, Any]) -> None:
 
 def _not_null(part: dict[str, Any], name: str) -> None:
     field = part["properties"][name]
-    part["properties"][name] = field["anyOf"][0] | {"description": field["description"]}
+    choices = [choice for choice in field["anyOf"] if choice != {"type": "null"}]
+    known = choices[0] if len(choices) == 1 else {"anyOf": choices}
+    part["properties"][name] = known | {"description": field["description"]}
 
 
 def _tighten_listed(part: dict[str, Any], name: str, least: int) -> None:
@@ -335,7 +337,8 @@ def _tighten_listed(part: dict[str, Any], name: str, least: int) -> None:
     del part["properties"]["path"]
     for each in (name, "model"):
         _not_null(part, each)
-    part["properties"][name]["minItems"] = least
+    values = part["properties"][name]
+    values.get("anyOf", [values])[0]["minItems"] = least  # the list; a single item is as it is
     part["oneOf"] = [{"required": [name]}, {"required": ["model"]}]
 
 

@@ -10,7 +10,7 @@ from wsrender.errors import DocumentError
 
 
 @pytest.mark.parametrize(
-    "points", [[[0, 0, False]], [["0", "0", "0"]], [[0, 0]], [], [[0, 0, math.nan]], "abc", 3, [1, 2, 3]], ids=str
+    "points", [[[0, 0, False]], [["0", "0", "0"]], [[0, 0]], [], [[0, 0, math.nan]], "abc", 3, [1, 2, 3, 4]], ids=str
 )
 def test_what_is_no_list_of_points_is_refused(points):
     with pytest.raises(DocumentError, match=r"list of points \[x, y, z\], finite numbers"):

@@ -82,3 +82,18 @@ def test_python_takes_one_too():
     assert found.document == ws.reachability("scara", [POINT]).document | {
         name: found.document[name] for name in ("timing_s", "provenance")
     }
+
+
+def test_one_point_of_a_plane_a_set_and_an_offset():
+    bar = {"analysis": "five_bar", "base_m": 1, "proximal_m": 1, "distal_m": 1}
+    for name in ("points_m", "joint_angles_rad"):
+        assert parse_job(bar | {name: [0.5, 0.9]}) == parse_job(bar | {name: [[0.5, 0.9]]})
+    mapped = {"analysis": "master_slave_mapping", "master": {"robot": "scara"}}
+    one = parse_job(mapped | {"slave": {"points": POINT}, "offsets_m": POINT})
+    assert one == parse_job(mapped | {"slave": {"points": [POINT]}, "offsets_m": [POINT]})
+    for wrong in ({"points_m": [0.5]}, {"points_m": [[0.5, 0.9, 1]]}, {"joint_angles_rad": 3}):
+        with pytest.raises(ws.DocumentError, match=next(iter(wrong))):
+            parse_job(bar | wrong)
+    for wrong in ({"slave": {"points": [1, 2]}}, {"slave": {"points": POINT}, "offsets_m": [1, 2]}):
+        with pytest.raises(ws.DocumentError, match=r"points|offsets_m"):
+            parse_job(mapped | wrong)

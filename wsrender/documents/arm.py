@@ -9,7 +9,7 @@ from wsrender.documents.document import Document
 from wsrender.documents.quantities import Name, is_numeric
 from wsrender.documents.robot import SOURCES, RobotSpec
 
-FILED = ("targets", "configurations")  # fields whose lists a file may hold
+FILED = ("targets", "configurations", "points_m", "joint_angles_rad")  # fields whose lists a file may hold
 OF_POINTS = ("left", "right", "master", "slave")  # fields that may be points, in a file too
 PYTHON_CLASS = "user_defined"  # says in a result's job of which class a robot is that no document describes
 OF_FILES = ("mesh", "convex_mesh", "height_field")  # shapes that a file may say

@@ -46,7 +46,7 @@ def rows_in(given: tuple[tuple[float, ...], ...] | ArrayFile, headers: Sequence[
     ``field``, file and what is allowed, for anything but finite numbers in so many columns, and for too many rows.
     """
     if not isinstance(given, ArrayFile):
-        return Rows(np.array(given, np.float64))
+        return Rows(np.array(given, np.float64) if given else np.zeros((0, len(headers[0]))))
     where, name = f"{field}.path", str(given.path)
     if given.model is not None:
         where, name = f"{field}.model", f"the upload {given.model[:12]}…"

@@ -71,6 +71,9 @@ def test_the_published_schema_is_that_of_the_documents():
     numbers = (1, 0, [1, 2], [1, 2, 3], [1, 2, -3], "1", None)
     bodies += [{"analysis": "five_bar", "base_m": 1, "proximal_m": 1, "distal_m": each} for each in numbers]
     links = {"base_m": 1, "proximal_m": 1, "distal_m": 1}
+    pairs = ([0.5, 0.9], [[0.5, 0.9]], [], [0.5], {"model": "0" * 64}, {"model": "x"}, {}, 1)
+    bodies += [{"analysis": "five_bar", **links, "points_m": each} for each in pairs]
+    bodies += [{"analysis": "planar_boundary", "robot": "scara", "points_m": each} for each in pairs]
     limits = (None, [None, None], [[0, 1], None], [[0, 1]], 1)
     bodies += [{"analysis": "five_bar", **links, "limits_rad": each} for each in limits]
     parallel = {"analysis": "parallel_workspace", "mechanism": "six_pus"}
@@ -79,6 +82,8 @@ def test_the_published_schema_is_that_of_the_documents():
     bodies += [parallel | {"kind": "total_orientation", "orientations": each} for each in angles]
     mapped = {"analysis": "master_slave_mapping", "master": {"robot": "scara"}, "slave": {"points": [[0, 0, 0]]}}
     bodies += [mapped | {"scale": each} for each in numbers]
+    bodies += [mapped | {"offsets_m": each} for each in ([0, 0, 1], [[0, 0, 1]], [0, 0])]
+    bodies += [mapped | {"slave": {"points": each}} for each in ([0, 0, 1], [[0, 0, 1]], [0, 0], [])]
     design = submission_examples()["design_optimization"]["value"]
     for pointers in ("/robot/dh/rows/1/a", ["/robot/dh/rows/1/a"], 5):
         bodies.append(design | {"parameters": [design["parameters"][0] | {"pointers": pointers}]})

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import LEAST_RANGE, WORKING_MODES
+from wsrender.documents.point_sets import PairsOrFile
 from wsrender.documents.quantities import PositiveNumber, VoxelSize, distinct, integer, quoted, real, sequence
 
 MOST_CELLS = 1_000_000  # of one working mode's map
@@ -58,19 +59,11 @@ def _levels(value: Any) -> tuple[float, ...]:
     return levels
 
 
-def _plane_rows(value: Any) -> tuple[tuple[float, ...], ...]:
-    rows = tuple(tuple(real(number) for number in sequence(row)) for row in sequence(value))
-    if len(rows) > MOST_ROWS or any(len(row) != 2 for row in rows):
-        raise ValueError(f"must be a list of at most {MOST_ROWS} pairs of numbers")
-    return rows
-
-
 Pair = Annotated[
     tuple[float, float],
     BeforeValidator(_pair, json_schema_input_type=tuple[PositiveNumber, PositiveNumber] | PositiveNumber),
 ]
 _Interval = tuple[float, float] | None
-PlaneRows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_rows)]
 
 
 class FiveBarJob(JobDocument):
@@ -111,10 +104,12 @@ class FiveBarJob(JobDocument):
     """Cells of the joint-space maps in a turn of an actuated joint."""
     levels: Annotated[tuple[float, ...], BeforeValidator(_levels)] = (1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
     """Condition numbers whose iso-curves are traced."""
-    points_m: PlaneRows = ()
-    """Points [x, y] whose postures in every working mode are given, with their indices [m]."""
-    joint_angles_rad: PlaneRows = ()
-    """Pairs [θ1, θ2] whose postures in both assembly modes are given, with their indices [rad]."""
+    points_m: PairsOrFile = ()
+    """Points [x, y] whose postures in every working mode are given, with their indices, at most 10,000 [m]; or a file
+    of them, {"path": "points.csv"}."""
+    joint_angles_rad: PairsOrFile = ()
+    """Pairs [θ1, θ2] whose postures in both assembly modes are given, with their indices, at most 10,000 [rad]; or a
+    file of them."""
 
     def arms(self) -> dict[tuple[str | int, ...], Any]:
         """No robots: the mechanism is in the job."""
@@ -126,6 +121,9 @@ class FiveBarJob(JobDocument):
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        for field in ("points_m", "joint_angles_rad"):
+            if isinstance(rows := getattr(self, field), tuple) and len(rows) > MOST_ROWS:
+                yield field, f"must be a list of at most {MOST_ROWS} pairs of numbers, not of {len(rows)}"
         lengths = {"base_m": (self.base_m,), "proximal_m": self.proximal_m, "distal_m": self.distal_m}
         longest = max(length for pair in lengths.values() for length in pair)
         for name, pair in lengths.items():

@@ -9,11 +9,13 @@ import numpy as np
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, WRITTEN_PER_S, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.five_bar.job import FiveBarJob
+from wsrender.analyses.five_bar.job import MOST_ROWS, FiveBarJob
 from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
 from wsrender.analyses.headline import headline, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.partial_tables import tables_of, with_tables
+from wsrender.documents.point_sets import PLANE_HEADERS
+from wsrender.errors import InputError
 from wsrender.mechanisms.five_bar import ASSEMBLY_MODES, FiveBar
 from wsrender.mechanisms.five_bar.aspects import Aspect, aspects
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
@@ -39,6 +41,7 @@ from wsrender.mechanisms.five_bar.tables import (
     outlines_table,
     postures_table,
 )
+from wsrender.robots.array_files import Rows, listed_provenance, rows_in
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -49,6 +52,7 @@ CELL_BYTES = 150.0  # of a cell of a map while it is made
 # Of a cell in the files; of the curves, and of iso-curves by the square root of the number of cells.
 CELL_FILE_BYTES, CURVE_BYTES, ISO_BYTES = 55.0, 1.75e6, 5.7e3
 BY_CELLS = Asks("voxel_size_m", "choose larger cells")
+HEADERS = {"points_m": PLANE_HEADERS, "joint_angles_rad": (("theta1", "theta2"), ("theta1_rad", "theta2_rad"))}
 UNITS = {"det_a": "m^2", "det_b": "m^4"}
 SAME_AREA = 1e-9  # of areas: rounding
 
@@ -59,7 +63,8 @@ class FiveBarAnalysis(Analysis):
     job: FiveBarJob
 
     def prepare(self, device: str, target: str) -> Settled:
-        """Settles the cells of the maps."""
+        """Settles the cells of the maps. Raises InputError for a file of points that cannot be read."""
+        _ = self.asked
         return Settled(device, target, ((0, self._cells + self._joint_cells),))
 
     @cached_property
@@ -73,6 +78,15 @@ class FiveBarAnalysis(Analysis):
         lower, upper = plane_bounds(self.five_bar)
         cell = self.job.voxel_size_m or round_to_digits(float((upper - lower).max()) / CELLS_ACROSS, 2)
         return plane_lattice(self.five_bar, cell)
+
+    @cached_property
+    def asked(self) -> dict[str, Rows]:
+        """Points (N, 2) [m] and angles (N, 2) [rad] that are asked, by field; raises InputError."""
+        found = {name: rows_in(getattr(self.job, name), headers, name) for name, headers in HEADERS.items()}
+        for name, rows in found.items():
+            if len(rows.values) > MOST_ROWS:
+                raise InputError(name, f"must hold at most {MOST_ROWS} rows, not {len(rows.values)}")
+        return found
 
     @property
     def _cells(self) -> int:
@@ -112,13 +126,14 @@ class FiveBarAnalysis(Analysis):
             "joint_space": joint_table(joint_map(five_bar, self.job.joint_steps)),
         }
         tell(self._cells + self._joint_cells)
+        points, angles = self._rows("points_m"), self._rows("joint_angles_rad")
         about = {
             "workspaces": [_workspace_entry(mode, region) for mode, region in regions.items()],
             "aspects": [_aspect_entry(each) for each in found],
             "kappa": [_least_kappas(mode, values) for mode, values in maps.items()],
             "isotropic_points": [entry for mode in modes for entry in self._isotropic_entries(mode)],
-            "points": [entry for point in self.job.points_m for entry in self._point_entries(point)],
-            "assemblies": [entry for theta in self.job.joint_angles_rad for entry in self._assembly_entries(theta)],
+            "points": [entry for point in points for entry in self._point_entries(point)],
+            "assemblies": [entry for theta in angles for entry in self._assembly_entries(theta)],
         }
         arrays = {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
         return with_tables(PartialResult(arrays, {"about": about}), tables)
@@ -140,7 +155,11 @@ class FiveBarAnalysis(Analysis):
         }
         volumes = {MODE_VOLUMES[mode]: self._volume(partial, mode) for mode in job.working_modes if self._cells}
         headline = _headline([each["area_m2"] for each in about["workspaces"]])
-        return Draft(document, headline, tables=tables_of(partial), volumes=volumes)
+        origin = listed_provenance(self.asked)
+        return Draft(document, headline, provenance=origin, tables=tables_of(partial), volumes=volumes)
+
+    def _rows(self, name: str) -> list[list[float]]:
+        return self.asked[name].values.tolist()
 
     def _volume(self, partial: PartialResult, mode: str) -> VolumeData:
         """The maps of a working mode as one layer of the lattice; "value" is that at the centre of a voxel."""

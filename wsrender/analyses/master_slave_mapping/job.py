@@ -12,7 +12,7 @@ from wsrender.documents.format import JobDocument, example
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
+from wsrender.documents.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, listed_rows, real, sequence
 from wsrender.documents.robot import Transform, Vector
 from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
 
@@ -79,7 +79,7 @@ def _positive_bounds(value: Any) -> tuple[float, ...]:
 
 
 def _vectors(value: Any) -> tuple[Any, ...]:
-    vectors = tuple(sequence(value))
+    vectors = tuple(listed_rows(value))
     if not 1 <= len(vectors) <= 100:
         raise ValueError("must be a list of 1 … 100 offsets [x, y, z]")
     return vectors
@@ -157,8 +157,10 @@ class MasterSlaveMappingJob(JobDocument):
     """S: scales along x, y, z of the master's world; one number stands for three."""
     rotation: Transform | None = None
     """R: rotation of the slave's points (its position_m must be 0); null: none."""
-    offsets_m: Annotated[tuple[Vector, ...], BeforeValidator(_vectors)] = ((0.0, 0.0, 0.0),)
-    """Offsets [m] that are compared: slave' = S R slave + offset."""
+    offsets_m: Annotated[
+        tuple[Vector, ...], BeforeValidator(_vectors, json_schema_input_type=tuple[Vector, ...] | Vector)
+    ] = ((0.0, 0.0, 0.0),)
+    """Offsets [m], a list or a single one, that are compared: slave' = S R slave + offset."""
     containment: Containment = Containment()
     """What decides whether a point lies in a workspace."""
     search: MappingSearch | None = None

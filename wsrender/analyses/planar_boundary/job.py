@@ -8,7 +8,8 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import Device
-from wsrender.documents.quantities import PositiveNumber, integer, rows_of
+from wsrender.documents.point_sets import PairsOrFile
+from wsrender.documents.quantities import PositiveNumber, integer
 from wsrender.documents.sampling import BoundaryBiased, Converge, Sampling
 
 MOST_CELLS = 1_000_000
@@ -41,9 +42,9 @@ class PlanarBoundaryJob(Arm, JobDocument):
     """TOLL: largest mean squared distance of boundary cells from a line [m²]; null: by the cells' width."""
     arc_tolerance_m4: PositiveNumber | None = None
     """TOLA: largest mean of (r² − R²)² of boundary cells about an arc [m⁴]; null: by the cells' width."""
-    points_m: Annotated[tuple[tuple[float, float], ...], rows_of(2)] = ()
+    points_m: PairsOrFile = ()
     """Points to be found inside or outside, with the nearest point of the boundary: rows of two coordinates in the
-    plane [m], x and y of the world for an arm that moves in that plane."""
+    plane [m], x and y of the world for an arm that moves in that plane; or a file of them, {"path": "points.npy"}."""
     device: Device = "auto"
     """Where the samples are evaluated: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
 

@@ -13,6 +13,7 @@ from wsrender.analyses.headline import headline, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.partial_tables import tables_of, with_tables
 from wsrender.analyses.planar_boundary.job import PlanarBoundaryJob
+from wsrender.documents.point_sets import PLANE_HEADERS
 from wsrender.engine import sampled_positions
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.agreement import disagreements, signed_area
@@ -25,6 +26,7 @@ from wsrender.notices import Notice
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import model_chain
+from wsrender.robots.array_files import Rows, rows_in
 from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core
@@ -44,13 +46,18 @@ class PlanarBoundaryAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises ModelError, naming the joint, for an arm that is not planar; InputError for one without a model."""
         samples = plan_sampling(model_chain(self.robot), self.job.sampling).count
-        _ = self.chain
+        _ = self.chain, self.asked
         return Settled(device, target, ((0, samples),))
 
     @cached_property
     def chain(self) -> PlanarChain:
         """The arm in its plane."""
         return planar_chain(model_chain(self.robot).held(self.job.sampling.locked), HOLDING)
+
+    @cached_property
+    def asked(self) -> Rows:
+        """The points (N, 2) [m] that are asked, with their file; raises InputError."""
+        return rows_in(self.job.points_m, PLANE_HEADERS, "points_m")
 
     @property
     def cost(self) -> Cost:
@@ -76,8 +83,8 @@ class PlanarBoundaryAnalysis(Analysis):
             "monte_carlo": _estimated_table(estimated, about["monte_carlo"]["converged"]),
             "samples": Table({"position": points[rows]}, {"position": "m"}),
         }
-        if job.points_m:
-            tables["points"] = _point_table(exact, np.array(job.points_m))
+        if len(self.asked.values):
+            tables["points"] = _point_table(exact, self.asked.values)
         return with_tables(PartialResult({}, {"about": about}), tables)
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
@@ -95,7 +102,8 @@ class PlanarBoundaryAnalysis(Analysis):
             **about,
         }
         tables = {name: table for name, table in tables_of(partial).items() if len(table)}
-        return Draft(document, _headline(about["exact"]), _notices(about["monte_carlo"]), tables=tables)
+        origin = self.asked.provenance("points_m")
+        return Draft(document, _headline(about["exact"]), _notices(about["monte_carlo"]), origin, tables=tables)
 
 
 def _headline(exact: dict[str, Any]) -> dict[str, Any]:
