@@ -343,7 +343,12 @@ MALFORMED = [
     (five_bar(levels=[1]), "levels", "must be a list of at most 50 different numbers above 1"),
     (five_bar(voxel_size_m=1e-4), "voxel_size_m", "must be at least 0.026 for links of these lengths"),
     (five_bar(joint_steps=4), "joint_steps", "must be at least 8, not 4"),
-    (five_bar(points_m=[[1, 2, 3]]), "points_m", "must be a list of at most 10000 pairs of numbers"),
+    (five_bar(points_m=[[1, 2, 3]]), "points_m", "must hold rows of 2 numbers; row 0 has 3"),
+    (
+        five_bar(points_m=[[1, 2]] * 10_001),
+        "points_m",
+        "must be a list of at most 10000 pairs of numbers, not of 10001",
+    ),
     (five_bar(joint_angles_rad=[[NAN, 0]]), "joint_angles_rad", "must be a finite number"),
     (five_bar(robot="ur5e"), "robot", "is not a known field"),
     # parallel mechanisms
