@@ -148,6 +148,82 @@ def test_the_volume_that_follows_a_limit_is_a_jobs(
     assert written["refined_volume"] is None
 
 
+def test_the_volume_follows_tool_and_base_and_is_that_of_the_job_they_make(
+    watched: Watched, client: ws.Client, finished: str
+) -> None:
+    """What the page writes as a job, computed, has the voxels that were shown; it names tool and placement."""
+    opened(watched, f"/job/{finished}")
+    page = watched.page
+    page.get_by_text("Change limits").click()
+    for label, value in (("Tool z [m]", 0.2), ("Base x [m]", 0.35)):
+        field = page.get_by_label(f"{label}, as a number")
+        field.fill(repr(value))
+        field.press("Enter")
+    page.get_by_role("button", name="Submit as a job").wait_for()
+    done = page.locator("[data-live=done][data-volume]")
+    done.wait_for()
+    settle(watched)
+    seen = float(done.get_attribute("data-volume"))
+    page.get_by_role("button", name="Submit as a job").click()
+    page.get_by_role("button", name="Edit as JSON").click()
+    written = json.loads(page.get_by_label("Job document").input_value())
+    arm = ws.load_robot("ur5e")
+    as_written = ws.load_robot("ur5e", tool=written["robot"]["tool"]).placed(
+        ws.Transform(**written["robot"]["placement"])
+    )
+    T = arm.forward_kinematics([0.1] * 6)[0] @ np.diag([1.0, 1, 1, 1])
+    expected = T[:3, 3] + 0.2 * T[:3, 2] + [0.35, 0, 0]
+    assert np.abs(as_written.forward_kinematics([0.1] * 6)[0, :3, 3] - expected).max() < 1e-9
+    volume = client.submit(written | {"sampling": NARROW["sampling"]}).result().volume
+    assert volume is not None and seen == len(volume.voxels.cells) * float(volume.voxel_size_m) ** 3
+
+
+def test_the_indices_of_a_configuration_are_the_librarys(watched: Watched, finished: str) -> None:
+    q = [0.3, -1.4, 1.6, -0.4, 1.1, 0.2]
+    opened(watched, f"/job/{finished}", configurations=[q])
+    page = watched.page
+    page.get_by_label("Joint joint6 [°], as a number").fill("20")
+    page.get_by_label("Joint joint6 [°], as a number").press("Enter")
+    page.get_by_text("Indices of this configuration").click()
+    shown = page.locator("dt:has-text('anipulability [m³]') + dd").last.inner_text()
+    known = ws.indices_at("ur5e", [[*q[:5], np.deg2rad(20)]], indices=["manipulability"])
+    assert float(shown) == pytest.approx(float(known.map.indices["manipulability"][0]), rel=1e-4)
+
+
+def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client: ws.Client, finished: str) -> None:
+    """A long one is watched as it goes on; what is deleted is gone from the server too."""
+    long = JOB | {"sampling": {"method": "sobol", "count": 10**10}, "labels": {"of": "the-long-one"}}
+    job, page = client.submit(long), watched.page
+    short = job.id[:8]
+    page.goto(watched.url)
+    row = page.locator(f"tr[data-job='{job.id}']")
+    row.locator("progress").wait_for()
+    other = page.locator(f"tr[data-job='{finished}']")
+    other.wait_for()
+    for filter_, choose, shown in (
+        ("State", lambda each: each.select_option("succeeded"), (False, True)),
+        ("State", lambda each: each.select_option(""), (True, True)),
+        ("Label", lambda each: each.fill("of=the-long-one"), (True, False)),
+        ("Label", lambda each: each.fill(""), (True, True)),
+        ("Analysis", lambda each: each.select_option("postures"), (False, False)),
+        ("Analysis", lambda each: each.select_option(""), (True, True)),
+    ):
+        choose(page.locator(f".jobs > .bar label:has-text('{filter_}') :is(select, input)").first)
+        for each, is_shown in zip((row, other), shown, strict=True):
+            each.wait_for(state="visible" if is_shown else "detached")
+    state = page.locator(f"tr[data-job='{job.id}'][data-state=canceled]")
+    page.get_by_role("button", name=f"Cancel job {short}").click()
+    state.wait_for()
+    page.get_by_role("button", name=f"Retry job {short}").click()
+    page.get_by_role("button", name=f"Cancel job {short}").click()
+    state.wait_for()
+    assert client.job(job.id).state == "canceled"
+    page.get_by_role("button", name=f"Delete job {short}").click()
+    page.get_by_role("button", name=f"Really delete job {short}").click()
+    row.wait_for(state="detached")
+    assert job.id not in [each.id for each in client.jobs()]
+
+
 def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
     opened(watched, f"/job/{finished}")
     page = watched.page

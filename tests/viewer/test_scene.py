@@ -319,6 +319,59 @@ def test_maps_points_and_robots(views):
     assert arm is None or arm["kind"] == "robot"
 
 
+def around(picture, place, half=6):
+    """Whether anything is drawn within some pixels of a place that a camera along y sees."""
+    column, row = np.floor(pixels(place[None], np.zeros(3), 1.0)[0]).astype(int)
+    return bool((picture[row - half : row + half + 1, column - half : column + half + 1] != 255).any())
+
+
+def test_arrows_lines_legs_surfaces_and_frames_stand_where_they_are(views):
+    """Each alone: where it is something is drawn, and nothing beside it; hidden, nothing at all."""
+    written, places = Written(), np.array([[-0.6, 0, 0], [-0.3, 0, 0], [0, 0, 0], [0.3, 0, 0]])
+    glyphs = {"name": "arrows", "label": "arrows", "unit": "N", "origins": written.numbers([-0.6, 0, -0.05], "float32"),
+              "vectors": written.numbers([0, 0, 4.0], "float32")}  # fmt: skip
+    upright = [[[-0.3, 0, -0.2], [-0.3, 0, 0.2]]]
+    curve = {"name": "curve", "label": "curve", "closed": False, "points": upright}
+    leg = {"name": "leg", "closed": False, "points": [[[0, 0, -0.2], [0, 0, 0.2]]]}
+    corners = np.array([[0.2, 0, -0.1], [0.4, 0, -0.1], [0.3, 0, 0.2]])
+    written.blobs["patch"] = box = glb([Part(corners, np.array([[0, 1, 2]]), (0.0, 0.3, 1.0), "patch")])
+    data = {"blob": "patch", "type": "glb", "length": len(box), "compression": None}
+    mesh = {"name": "mesh", "label": "mesh", "role": "boundary", "geometry": data}
+    whole = manifest(glyphs=[glyphs], curves=[curve], skeletons=[leg], meshes=[mesh])
+    views.show(whole, written.blobs, camera=looking([0, 0, 0], 1.0))
+    views.until("stage.info.idle")
+    names, beside = ("arrows", "curve", "leg", "mesh"), places + np.array([0.12, 0, 0])
+    for shown in (names, *((name,) for name in names), ()):
+        layers = {name: {"visible": name in shown, "opacity": 1} for name in names}
+        views.change(layers=layers)
+        picture = views.picture()
+        drawn = [around(picture, place) for place in places]
+        assert drawn == [name in shown for name in names], shown
+        assert not any(around(picture, place) for place in beside)
+        if shown == ("mesh",):
+            red, _, blue = at(picture, pixels(places[3:], np.zeros(3), 1.0))[0]
+            assert blue > 2 * red  # of the patch's own colour
+
+
+def test_the_frames_of_a_robot_stand_at_its_joints(views):
+    """Red, green and blue, at the tip that kinematics tell of."""
+    robot, view = ws.load_robot("ur5e"), robot_view("ur5e")
+    tip = robot.forward_kinematics(np.array([view.manifest["robots"][0]["home"]]))[0, :3, 3]
+    views.show(view.manifest, dict(view.blobs), camera=looking(tip, 0.25), layers={"robot:0": OFF, "axes": OFF})
+    before = views.picture()
+    views.change(layers={"robot:0": ON, "frames": OFF})
+    bare = views.picture()
+    views.change(layers={"frames": ON})
+    near = slice(HEIGHT // 2 - 60, HEIGHT // 2 + 60), slice(WIDTH // 2 - 60, WIDTH // 2 + 60)
+    changed = (views.picture() != bare).any(axis=2)[near]
+    assert changed.sum() > 30
+    colors = views.picture()[near][changed].astype(int)
+    for k in range(3):
+        others = np.delete(colors, k, axis=1).max(axis=1)
+        assert (colors[:, k] > others + 25).sum() > 5, k
+    assert (before[near] == 255).all()
+
+
 def test_a_million_points_are_drawn(views):
     """Points on the CPU, in the order of their depths."""
     written, n = Written(), 1_000_000
