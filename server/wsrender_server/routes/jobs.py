@@ -10,6 +10,7 @@ from time import monotonic
 from typing import Annotated, Any, cast
 
 from fastapi import APIRouter, Depends, Query, Request, Response
+from pydantic import AfterValidator
 
 from wsrender.analyses.registry import job_classes
 from wsrender.errors import InputError
@@ -30,20 +31,23 @@ router = APIRouter(prefix="/v1", tags=["jobs"])
 _Body = Annotated[bytes, Depends(job_body)]
 
 
+_Rough = Annotated[float, AfterValidator(lambda value: float(f"{value:.3g}"))]  # digits that are no accuracy stay out
+
+
 class Estimate(View):
-    """What a job would take: orders of magnitude."""
+    """What a job would take: orders of magnitude, to three digits."""
 
     valid: bool
     """True: the job can be submitted."""
     samples: float
     """Samples."""
-    bytes: float | None
+    bytes: _Rough | None
     """Memory [bytes], the same as memory_bytes; null: little."""
-    memory_bytes: float | None = None
+    memory_bytes: _Rough | None = None
     """Largest arrays that are held at a time [bytes]."""
-    file_bytes: float | None = None
+    file_bytes: _Rough | None = None
     """Result files [bytes]; of compressed ones as they are before."""
-    seconds: float | None
+    seconds: _Rough | None
     """Time on this server [s]; null: little."""
 
 

@@ -8,6 +8,7 @@ from wsrender_server.routes.kinetostatic_stream import _admitted
 
 from tests.golden.files import golden_names, job_of
 from tests.server.http.idle_server import DOCUMENT, problem_of
+from wsrender import run
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import DocumentError, InputError
 
@@ -229,6 +230,9 @@ def test_validation_plans_the_job(client, jobs):
     estimate = response.json()
     assert response.status_code == 200 and estimate["valid"] and estimate["samples"] == 4**4
     assert estimate["seconds"] > 0 and jobs.store.list("local") == ([], None)
+    expected = run.plan(DOCUMENT).estimate
+    for name in ("seconds", "bytes", "memory_bytes", "file_bytes"):
+        assert estimate[name] == float(f"{estimate[name]:.3g}") == pytest.approx(expected[name], rel=6e-3)
     rows = {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]] * 3}
     assert client.post("/v1/jobs:validate", json=rows).json()["samples"] == 3
     problem = problem_of(client.post("/v1/jobs:validate", json=DOCUMENT | {"tip": "hand"}), 409, "frame_not_found")
