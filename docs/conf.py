@@ -27,6 +27,7 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
+    "tutorials",
 ]
 exclude_patterns = [
     "_extensions",
@@ -63,12 +64,13 @@ html_theme_options = {
     "footer_end": [],
 }
 
-# The gallery's scripts, run in alphabetical order. DOCS_GALLERY: names of those to run, apart by commas; without it
-# all are, and where it is empty none.
+# The gallery's scripts, run in alphabetical order, and the tutorials. DOCS_GALLERY: names of those to run, apart by
+# commas; without it all are, and where it is empty none.
 EXTRA = HERE / "generated" / "extra"  # what is copied to the site as it is
 EXTRA.mkdir(parents=True, exist_ok=True)
 html_extra_path = [str(EXTRA.relative_to(HERE))]
 _chosen = os.environ.get("DOCS_GALLERY")
+tutorials_run = None if _chosen is None else _chosen.split(",")
 _names = "|".join(name for name in (_chosen or "").split(",") if name) or "(?!)"
 sphinx_gallery_conf = {
     "examples_dirs": ["gallery"],

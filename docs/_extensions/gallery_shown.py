@@ -34,6 +34,14 @@ _FRAME = """
 """
 
 
+def described(code: str, where: str) -> str:
+    """What is seen in the picture that a block of code shows, by its line ``# Picture: …``; the build fails without."""
+    said = _SAID.search(code)
+    if said is None:
+        raise ExtensionError(f"{where}: a block shows something without a line '# Picture: …'")
+    return said[1].replace("\n# ", " ")
+
+
 class Shown:
     """Scraper of sphinx-gallery; views are written to ``views``, from where Sphinx copies them to ``/views``."""
 
@@ -51,10 +59,7 @@ class Shown:
         value = block_vars["example_globals"].get("___") if lines and isinstance(lines[-1], ast.Expr) else None
         if not isinstance(value, Figure | Result):
             return ""
-        said = _SAID.search(content)
-        if said is None:
-            raise ExtensionError(f"{block_vars['src_file']}: a block shows something without a line '# Picture: …'")
-        words = said[1].replace("\n# ", " ")
+        words = described(content, block_vars["src_file"])
         path = Path(next(block_vars["image_path_iterator"]))
         if isinstance(value, Figure):
             value.savefig(path, dpi=_DPI)

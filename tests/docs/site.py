@@ -14,16 +14,20 @@ from shutil import copytree, ignore_patterns
 
 CLONE = Path(__file__).parents[2]
 SCRIPTS = sorted(CLONE.glob("docs/gallery/*/plot_*.py"))
+TUTORIALS = [path for path in sorted(CLONE.glob("docs/tutorials/*.md")) if path.stem != "index"]
 CHOSEN = 8
 
 
 def chosen() -> list[str]:
     """Names of the scripts that are run: all if DOCS_CHOICE is "all", else some by its hash, such as a commit's."""
+    return _of([path.stem for path in SCRIPTS], CHOSEN)
+
+
+def _of(names: list[str], count: int) -> list[str]:
     choice = os.environ.get("DOCS_CHOICE", "")
-    names = [path.stem for path in SCRIPTS]
     if choice == "all":
         return names
-    return sorted(names, key=lambda name: hashlib.sha256(f"{choice}{name}".encode()).digest())[:CHOSEN]
+    return sorted(names, key=lambda name: hashlib.sha256(f"{choice}{name}".encode()).digest())[:count]
 
 
 def build(folder: Path) -> Path:
@@ -31,7 +35,8 @@ def build(folder: Path) -> Path:
     source = copytree(CLONE / "docs", folder / "docs", ignore=ignore_patterns("generated", "_build"))
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", str(source), str(folder / "site")]
     known = os.pathsep.join(str(CLONE / each) for each in ("", "kernels", "server"))
-    environment = os.environ | {"DOCS_GALLERY": ",".join(chosen()), "PYTHONPATH": known}
+    run = chosen() + _of([path.stem for path in TUTORIALS], 1)
+    environment = os.environ | {"DOCS_GALLERY": ",".join(run), "PYTHONPATH": known}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "site"
