@@ -9,7 +9,7 @@ import pytest
 
 import wsrender as ws
 from tests.viewer.axe import serious_faults
-from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle
+from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, until
 from tests.viewer.written import decoded
 
 
@@ -53,6 +53,40 @@ def test_a_job_is_submitted_through_the_form_and_watched(watched: Watched) -> No
     row.get_by_role("button", name="View").click()
     page.get_by_role("button", name="Show all").wait_for()
     assert watched.refusals <= 4
+
+
+def test_what_stands_around_is_edited_before_ones_eyes(watched: Watched, client: ws.Client) -> None:
+    """A box that is added in the form is seen, larger when its edges grow; the job that is submitted has it."""
+    page = watched.page
+    page.goto(watched.url + "/#/new")
+    page.locator('[data-pointer="#/robot"]').first.select_option(label="scara")
+    stage = page.locator(".preview-host")
+    stage.locator("canvas").first.wait_for()
+    page.get_by_label("Environment", exact=True).check()
+    page.get_by_role("button", name="Add to items").click()
+    page.locator('[data-pointer="#/environment/items/0"]').select_option(label="Box …")
+
+    def tan() -> int:
+        """Pixels in the colour of what stands around."""
+        red, green, blue = np.moveaxis(decoded(stage.screenshot()).astype(int), 2, 0)
+        return int(((red > green + 10) & (green > blue + 15) & (red > 90)).sum())
+
+    assert tan() < 20
+    sizes = []
+    for edge in (0.3, 0.6):
+        for field, values in (("size_m", [edge] * 3), ("position_m", [0, 1.2, 0])):
+            cells = page.locator(f'[data-pointer="#/environment/items/0/{field}"] input')
+            for cell, value in zip(cells.all(), values, strict=True):
+                cell.fill(str(value))
+        with page.expect_response("**/v1/robots:view"):
+            pass
+        until(lambda: tan() > (sizes[-1] if sizes else 0) + 100)
+        sizes.append(tan())
+    page.locator('[data-pointer="#/voxel_size_m"]').fill("0.1")
+    page.get_by_role("button", name="Submit").click()
+    page.locator("tr[data-job]").first.wait_for()
+    (item,) = next(iter(client.jobs())).result().document["job"]["environment"]["items"]
+    assert (item["shape"], item["size_m"], item["position_m"]) == ("box", [0.6] * 3, [0, 1.2, 0])
 
 
 def test_whole_numbers_keep_their_digits(watched: Watched, client: ws.Client) -> None:
