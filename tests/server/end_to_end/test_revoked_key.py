@@ -1,0 +1,48 @@
+"""A stream of events ends soon after its key was revoked, though its job has not ended."""
+
+import time
+
+import httpx2
+from wsrender_server.local_server import LocalServer
+
+from tests.server.end_to_end.acceptance import PATIENCE_S, QUICK
+
+SECRET = "an-administrators-secret-of-the-test"
+SOON_S = 20.0  # a second is the rule; machines are shared
+
+
+def bearer(secret):
+    return {"Authorization": f"Bearer {secret}"}
+
+
+def test_a_stream_ends_with_its_key(tmp_path):
+    keys = tmp_path / "keys"
+    keys.write_text(f"{SECRET} root admin\n")
+    keys.chmod(0o600)
+    with (
+        LocalServer(tmp_path / "data", ["--api-key-file", str(keys)]) as server,
+        httpx2.Client(base_url=server.url, timeout=PATIENCE_S) as http,
+    ):
+        ann, bob = (
+            http.post("/v1/keys", json={"name": name}, headers=bearer(SECRET)).json() for name in ("ann", "bob")
+        )
+        waiting = QUICK | {"device": "cuda:7"}  # there is no such worker: it stays queued
+        jobs = [http.post("/v1/jobs", json=waiting, headers=bearer(key["secret"])).json() for key in (ann, bob)]
+        streams = [
+            http.stream("GET", f"/v1/jobs/{job['id']}/events", headers=bearer(key["secret"]))
+            for job, key in zip(jobs, (ann, bob), strict=True)
+        ]
+        with streams[0] as of_ann, streams[1] as of_bob:
+            assert of_ann.status_code == of_bob.status_code == 200
+            lines = of_ann.iter_lines()
+            assert next(lines)  # it has begun
+            began = time.monotonic()
+            revoked = http.post(f"/v1/keys/{ann['id']}:revoke", headers=bearer(SECRET))
+            assert revoked.json()["revoked_at"]
+            for _ in lines:
+                assert time.monotonic() - began < SOON_S
+            assert time.monotonic() - began < SOON_S
+            assert next(of_bob.iter_lines())
+        job = http.get(f"/v1/jobs/{jobs[1]['id']}", headers=bearer(bob["secret"])).json()
+        assert job["state"] == "queued"
+        assert http.get(f"/v1/jobs/{jobs[0]['id']}", headers=bearer(ann["secret"])).status_code == 401
