@@ -155,7 +155,7 @@ ANSWERS = {
     "How do I lock a joint or narrow its limits?": "robots",
     "How do I load xacro, a ROS package, a Menagerie model?": "robots",
     "Where do I put the base so that all my targets are reached?": "plot_base_for_my_targets",
-    "Which of these robots does my task?": "comparing",
+    "Which of these robots does my task?": "comparing plot_which_robot_does_my_task",
     "Can the arm carry 3 kg everywhere?": "capacity",
     "How do I compare two designs?": "comparing",
     'What does "undecided" mean?': "results",
