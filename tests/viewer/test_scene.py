@@ -334,7 +334,7 @@ def test_arrows_lines_legs_surfaces_and_frames_stand_where_they_are(views):
     curve = {"name": "curve", "label": "curve", "closed": False, "points": upright}
     leg = {"name": "leg", "closed": False, "points": [[[0, 0, -0.2], [0, 0, 0.2]]]}
     corners = np.array([[0.2, 0, -0.1], [0.4, 0, -0.1], [0.3, 0, 0.2]])
-    written.blobs["patch"] = box = glb([Part(corners, np.array([[0, 1, 2]]), (0.0, 0.3, 1.0), "patch")])
+    written.blobs["patch"] = box = glb([ColoredMesh(corners, np.array([[0, 1, 2]]), (0.0, 0.3, 1.0), "patch")])
     data = {"blob": "patch", "type": "glb", "length": len(box), "compression": None}
     mesh = {"name": "mesh", "label": "mesh", "role": "boundary", "geometry": data}
     whole = manifest(glyphs=[glyphs], curves=[curve], skeletons=[leg], meshes=[mesh])
