@@ -26,7 +26,7 @@ def test_a_stream_ends_with_its_key(tmp_path):
         ann, bob = (
             http.post("/v1/keys", json={"name": name}, headers=bearer(SECRET)).json() for name in ("ann", "bob")
         )
-        waiting = QUICK | {"device": "cuda:7"}  # there is no such worker: it stays queued
+        waiting = QUICK | {"sampling": {"method": "sobol", "count": 9_000_000_000}}  # it takes hours
         jobs = [http.post("/v1/jobs", json=waiting, headers=bearer(key["secret"])).json() for key in (ann, bob)]
         streams = [
             http.stream("GET", f"/v1/jobs/{job['id']}/events", headers=bearer(key["secret"]))
@@ -39,10 +39,10 @@ def test_a_stream_ends_with_its_key(tmp_path):
             began = time.monotonic()
             revoked = http.post(f"/v1/keys/{ann['id']}:revoke", headers=bearer(SECRET))
             assert revoked.json()["revoked_at"]
-            for _ in lines:
-                assert time.monotonic() - began < SOON_S
+            for line in lines:
+                assert time.monotonic() - began < SOON_S and "failed" not in line, line
             assert time.monotonic() - began < SOON_S
             assert next(of_bob.iter_lines())
         job = http.get(f"/v1/jobs/{jobs[1]['id']}", headers=bearer(bob["secret"])).json()
-        assert job["state"] == "queued"
+        assert job["state"] in ("queued", "running")
         assert http.get(f"/v1/jobs/{jobs[0]['id']}", headers=bearer(ann["secret"])).status_code == 401
