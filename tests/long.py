@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests import ten_minutes
 from tests.collision import many_labels
+from tests.docs import whole_gallery
 from tests.engine import closed_form_poses, free_joint_sweeps, open_wrist_poses
 from tests.reach import near_limits, posture_peers, refutations, self_motion_sweeps
 from tests.robots import model_packages
@@ -39,6 +40,7 @@ PIECES = {
     "webhooks": webhook_deliveries,
     "largest_picture": largest_picture,
     "ten_minutes": ten_minutes,
+    "gallery": whole_gallery,
 }
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fastapi import FastAPI
@@ -73,10 +74,7 @@ def result_schemas() -> dict[str, Any]:
     """A schema for the result documents of each analysis, such as ``WorkspaceResult``, and for their parts."""
     classes = result_classes().values()
     _, found = models_json_schema([(each, "validation") for each in classes], ref_template=f"{_SCHEMAS}{{model}}")
-    names = {name: name if name.endswith("Result") else f"Result{name}" for name in found["$defs"]}
-    # Generators call classes as titles say.
-    text = json.dumps({names[name]: part | {"title": names[name]} for name, part in found["$defs"].items()})
-    return json.loads(_REFERENCE.sub(lambda match: f'"{_SCHEMAS}{names[match[1]]}"', text))
+    return _named(found["$defs"], lambda name: name if "Result" in name else f"Result{name}")
 
 
 def _as_its_analysis_says(analysis: str) -> dict[str, Any]:
@@ -88,6 +86,12 @@ def _as_its_analysis_says(analysis: str) -> dict[str, Any]:
 
 def _view_schemas() -> dict[str, Any]:
     """The manifest of a view."""
-    found = MANIFEST.json_schema(ref_template="#/components/schemas/View{model}")
-    parts = {f"View{name}": part for name, part in found.pop("$defs").items()}
-    return {**parts, "Manifest": found}
+    found = MANIFEST.json_schema(ref_template=f"{_SCHEMAS}{{model}}")
+    schemas = {**found.pop("$defs"), "Manifest": found}
+    return _named(schemas, lambda name: name if name.startswith(("View", "Manifest")) else f"View{name}")
+
+
+def _named(schemas: Mapping[str, Any], new: Callable[[str], str]) -> dict[str, Any]:
+    """Schemas, which refer to each other, by new names, which are their titles, too: generators call classes so."""
+    text = json.dumps({new(name): schema | {"title": new(name)} for name, schema in schemas.items()})
+    return json.loads(_REFERENCE.sub(lambda match: f'"{_SCHEMAS}{new(match[1])}"', text))

@@ -25,13 +25,13 @@ def may_lack() -> Any:
     return Field(default_factory=lambda: None)
 
 
-class Part(BaseModel):
+class ResultPart(BaseModel):
     """A part of a result document; it holds nothing else."""
 
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True, protected_namespaces=())
 
 
-class RobotEntry(Part):
+class RobotEntry(ResultPart):
     """A robot."""
 
     name: str
@@ -60,7 +60,7 @@ class RobotEntry(Part):
     """Whether the model says its inertias."""
 
 
-class NamedRobot(Part):
+class NamedRobot(ResultPart):
     """A robot among several."""
 
     name: str
@@ -69,7 +69,7 @@ class NamedRobot(Part):
     """The robot."""
 
 
-class Headline(Part):
+class Headline(ResultPart):
     """The number that an analysis is about."""
 
     quantity: Literal["volume", "area", "length"]
@@ -84,7 +84,7 @@ class Headline(Part):
     """Why there is none."""
 
 
-class WarningEntry(Part):
+class WarningEntry(ResultPart):
     """Something that a user should know."""
 
     code: str
@@ -128,7 +128,7 @@ class Provenance(BaseModel):
     """Python and system that it ran on."""
 
 
-class ArtifactEntry(Part):
+class ArtifactEntry(ResultPart):
     """A file of a result."""
 
     name: str
@@ -147,7 +147,7 @@ class ArtifactEntry(Part):
     """Frame that its coordinates refer to."""
 
 
-class ResultDocument(Part):
+class ResultDocument(ResultPart):
     """What every result document has."""
 
     format: int = Field(json_schema_extra={"const": FORMAT})
@@ -166,7 +166,7 @@ class ResultDocument(Part):
     """Its files, once it is saved."""
 
 
-class Interval(Part):
+class Interval(ResultPart):
     """A value with its 95 % interval."""
 
     value: float | None
@@ -182,7 +182,7 @@ class Blocked(Interval):
     """By each constraint."""
 
 
-class FalseNegatives(Part):
+class ResultFalseNegatives(ResultPart):
     """How often inverse kinematics found nothing at points that are reached."""
 
     tested: Count
@@ -191,7 +191,7 @@ class FalseNegatives(Part):
     """Those that it did not find."""
 
 
-class RefinedVolume(Part):
+class RefinedVolume(ResultPart):
     """A volume by inverse kinematics, with its 95 % interval."""
 
     value: float | None
@@ -208,11 +208,11 @@ class RefinedVolume(Part):
     """Points that were decided."""
     position_tolerance_m: float
     """How near the tip must come [m]."""
-    false_negatives: list[FalseNegatives]
+    false_negatives: list[ResultFalseNegatives]
     """Of each robot."""
 
 
-class Parts(Part):
+class Parts(ResultPart):
     """What constraints leave of a measure."""
 
     free: Interval
@@ -223,7 +223,7 @@ class Parts(Part):
     """Left undecided."""
 
 
-class RefinedMeasure(RefinedVolume):
+class ResultRefinedMeasure(RefinedVolume):
     """A volume [m³], area [m²] or length [m] by inverse kinematics, with its 95 % interval."""
 
     quantity: Literal["volume", "area", "length"]
@@ -236,10 +236,10 @@ class RefinedMeasure(RefinedVolume):
     """Under constraints: what is free, and blocked."""
 
 
-class Measured(Part):
+class Measured(ResultPart):
     """A measure by inverse kinematics, and under constraints what of it is free, blocked and undecided."""
 
-    refined: RefinedMeasure | None
+    refined: ResultRefinedMeasure | None
     """The measure; null where none was asked for, or it is of another kind."""
     free: Interval = may_lack()
     """Free."""
@@ -260,7 +260,7 @@ class VoxelVolume(Measured):
     """Of those and their neighbours."""
 
 
-class Sampling(Part):
+class Sampling(ResultPart):
     """What was sampled."""
 
     method: str
@@ -275,7 +275,7 @@ class Sampling(Part):
     """Joints that were held [rad or m]."""
 
 
-class Samples(Part):
+class ResultSamples(ResultPart):
     """What constraints admit."""
 
     drawn: Count
@@ -286,7 +286,7 @@ class Samples(Part):
     """By the first constraint that rejects them."""
 
 
-class FirstRejected(Part):
+class FirstRejected(ResultPart):
     """The first sample that a constraint rejected."""
 
     sample: Count
@@ -295,7 +295,7 @@ class FirstRejected(Part):
     """Its configuration [rad or m]."""
 
 
-class CollidingPair(Part):
+class CollidingPair(ResultPart):
     """Two shapes that come too near each other."""
 
     constraint: str
@@ -306,7 +306,7 @@ class CollidingPair(Part):
     """Samples in which they do."""
 
 
-class CollidingPairs(Part):
+class CollidingPairs(ResultPart):
     """Which shapes collide how often."""
 
     counted: Count
@@ -315,7 +315,7 @@ class CollidingPairs(Part):
     """Most often first."""
 
 
-class Rejections(Part):
+class Rejections(ResultPart):
     """What constraints reject."""
 
     first: dict[str, FirstRejected]
@@ -324,7 +324,7 @@ class Rejections(Part):
     """Where shapes are kept apart."""
 
 
-class LostVolume(Part):
+class LostVolume(ResultPart):
     """Volume of voxels that lost all their samples [m³]."""
 
     drawn: float
@@ -335,7 +335,7 @@ class LostVolume(Part):
     """If as many samples were dropped at random."""
 
 
-class MovedMean(Part):
+class MovedMean(ResultPart):
     """The mean of an index."""
 
     drawn: float
@@ -346,7 +346,7 @@ class MovedMean(Part):
     """If as many were dropped at random."""
 
 
-class MovedMeans(Part):
+class MovedMeans(ResultPart):
     """How means change."""
 
     counted: Count
@@ -364,7 +364,7 @@ class SweepRejections(Rejections):
     """Means of indices."""
 
 
-class Extremes(Part):
+class Extremes(ResultPart):
     """An index over configurations."""
 
     maximum: float | None
@@ -377,7 +377,7 @@ class Extremes(Part):
     """Its unit."""
 
 
-class IndexEntry(Part):
+class IndexEntry(ResultPart):
     """An index over a workspace."""
 
     maximum: float
@@ -396,7 +396,7 @@ class IndexEntry(Part):
     """Its unit."""
 
 
-class Choices(Part):
+class ResultChoices(ResultPart):
     """What makes the values of indices unambiguous."""
 
     task: list[Literal["x", "y", "z", "rx", "ry", "rz"]]
@@ -415,7 +415,7 @@ class Choices(Part):
     """Options of indices that have some."""
 
 
-class SurfaceEntry(Part):
+class SurfaceEntry(ResultPart):
     """A mesh."""
 
     mesh: str
@@ -442,7 +442,7 @@ class SurfaceEntry(Part):
     """What that of the other half encloses [m³]; null: nothing."""
 
 
-class NoSurface(Part):
+class NoSurface(ResultPart):
     """A mesh that there is not."""
 
     mesh: None
@@ -451,7 +451,7 @@ class NoSurface(Part):
     """Why."""
 
 
-class Bounds(Part):
+class ResultBounds(ResultPart):
     """A box in the world."""
 
     lower: Point
@@ -460,7 +460,7 @@ class Bounds(Part):
     """Its upper corner [m]."""
 
 
-class GlobalIndices(Part):
+class GlobalIndices(ResultPart):
     """Indices of the whole workspace."""
 
     global_isotropy: float
@@ -471,7 +471,7 @@ class GlobalIndices(Part):
     """Why."""
 
 
-class Converged(Part):
+class Converged(ResultPart):
     """A grid of a sampling that converges."""
 
     per_joint: Count
@@ -487,7 +487,7 @@ class OneOfSeveral(NamedRobot):
 
     sampling: Sampling
     """What was sampled."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     rejections: SweepRejections = may_lack()
     """Under constraints: what they reject."""
@@ -497,7 +497,7 @@ class OneOfSeveral(NamedRobot):
     """Volumes [m³]."""
     headline: Headline
     """What is measured of it alone."""
-    bounds_m: Bounds
+    bounds_m: ResultBounds
     """Box around its positions [m]."""
     global_: GlobalIndices = Field(alias="global")
     """Indices of its whole workspace."""
@@ -505,7 +505,7 @@ class OneOfSeveral(NamedRobot):
     """Grids of a sampling that converges; null of others."""
 
 
-class LabelCounts(Part):
+class LabelCounts(ResultPart):
     """Voxels by label and by reason."""
 
     labels: dict[str, Count]
@@ -514,7 +514,7 @@ class LabelCounts(Part):
     """By reason."""
 
 
-class CriterionEntry(Part):
+class CriterionEntry(ResultPart):
     """What targets must fulfil, and whether they do."""
 
     least_share: Share
@@ -533,7 +533,7 @@ class CriterionEntry(Part):
     """Whether enough do."""
 
 
-class Covered(Part):
+class Covered(ResultPart):
     """How much of a volume of targets is reached."""
 
     points: Count
@@ -550,7 +550,7 @@ class Covered(Part):
     """What that rests on."""
 
 
-class PlacementLabels(Part):
+class PlacementLabels(ResultPart):
     """Pairs of a placement and a target by label."""
 
     served: Count
@@ -563,7 +563,7 @@ class PlacementLabels(Part):
     """Neither was found."""
 
 
-class Placements(Part):
+class ResultPlacements(ResultPart):
     """Placements of a base, and what they serve."""
 
     count: Count
@@ -590,7 +590,7 @@ class Placements(Part):
     """What labels rest on."""
 
 
-class Place(Part):
+class Place(ResultPart):
     """Where a base stands."""
 
     x_m: float

@@ -9,11 +9,11 @@ from wsrender.results.document import (
     Covered,
     CriterionEntry,
     NamedRobot,
-    Part,
     Place,
-    Placements,
     Pose,
     ResultDocument,
+    ResultPart,
+    ResultPlacements,
     RobotEntry,
     may_lack,
 )
@@ -39,7 +39,7 @@ class PlacementCell(ServingPlace):
     """Its number."""
 
 
-class LargestTried(Part):
+class LargestTried(ResultPart):
     """How far was tried at most."""
 
     translation_m: float
@@ -48,7 +48,7 @@ class LargestTried(Part):
     """Turn [rad]."""
 
 
-class PlacementTolerance(Part):
+class PlacementTolerance(ResultPart):
     """How far the base may stand elsewhere and serve the same."""
 
     translation_m: float
@@ -79,7 +79,7 @@ class BestOfRobots(BestPlacement):
     """Which robot's it is."""
 
 
-class PlacementPareto(Part):
+class PlacementPareto(ResultPart):
     """Placements that no other beats in one objective without being worse in the other."""
 
     objectives: Annotated[list[str], Field(min_length=2, max_length=2)]
@@ -90,10 +90,10 @@ class PlacementPareto(Part):
     """How many pairs of values."""
 
 
-class PlacedRobot(NamedRobot):
+class ResultPlacedRobot(NamedRobot):
     """One of several robots, each placed by itself."""
 
-    placements: Placements
+    placements: ResultPlacements
     """Its placements."""
     best: BestPlacement | None
     """The best of them; null: none serves a target."""
@@ -103,7 +103,7 @@ class PlacedRobot(NamedRobot):
     """Of all criteria."""
 
 
-class PlacedArms(Part):
+class PlacedArms(ResultPart):
     """Cells of the map by which robot does best there."""
 
     cells: Count
@@ -127,9 +127,9 @@ class BasePlacementResult(ResultDocument):
     """Name of the analysis."""
     robot: RobotEntry = may_lack()
     """The robot, of one."""
-    placements: Placements = may_lack()
+    placements: ResultPlacements = may_lack()
     """Its placements, of one."""
-    robots: list[PlacedRobot] = may_lack()
+    robots: list[ResultPlacedRobot] = may_lack()
     """Of several each by itself."""
     arms: PlacedArms = may_lack()
     """Of several: which does best where."""

@@ -2,10 +2,19 @@
 
 from typing import Literal
 
-from wsrender.results.document import Count, Pair, Part, Point, RefinedVolume, ResultDocument, RobotEntry, may_lack
+from wsrender.results.document import (
+    Count,
+    Pair,
+    Point,
+    RefinedVolume,
+    ResultDocument,
+    ResultPart,
+    RobotEntry,
+    may_lack,
+)
 
 
-class Primitive(Part):
+class ResultPrimitive(ResultPart):
     """A surface, by the numbers that its kind has."""
 
     kind: str
@@ -28,7 +37,7 @@ class Primitive(Part):
     """Half the angle of a cone [rad]."""
 
 
-class Generator(Part):
+class Generator(ResultPart):
     """What generates a patch."""
 
     limits: list[str]
@@ -39,7 +48,7 @@ class Generator(Part):
     """Whether the arm is singular there."""
 
 
-class PatchEntry(Primitive):
+class PatchEntry(ResultPrimitive):
     """A patch of the boundary."""
 
     method: str
@@ -52,11 +61,11 @@ class PatchEntry(Primitive):
     """How far its points are from the surface [m]; null: it is a free form that nothing was fitted to."""
     points_fitted: Count
     """How many they are."""
-    nearest: Primitive = may_lack()
+    nearest: ResultPrimitive = may_lack()
     """Of a free form: the surface that is nearest to it."""
 
 
-class EdgeEntry(Part):
+class EdgeEntry(ResultPart):
     """Where two patches meet."""
 
     kind: str
@@ -79,7 +88,7 @@ class EdgeEntry(Part):
     """Its radius [m]."""
 
 
-class CornerEntry(Part):
+class CornerEntry(ResultPart):
     """Where edges meet."""
 
     position_m: Point
@@ -88,7 +97,7 @@ class CornerEntry(Part):
     """Numbers of the patches."""
 
 
-class PatchVolume(Part):
+class PatchVolume(ResultPart):
     """Volumes [m³]."""
 
     integrated: float = may_lack()
@@ -99,7 +108,7 @@ class PatchVolume(Part):
     """By inverse kinematics, of others."""
 
 
-class PatchMesh(Part):
+class ResultPatchMesh(ResultPart):
     """The mesh of the patches."""
 
     mesh: Literal["patches"]
@@ -137,5 +146,5 @@ class BoundaryPatchesResult(ResultDocument):
     """How near points must be to a fitted surface [m]."""
     undecided: Count = may_lack()
     """Points that inverse kinematics left undecided."""
-    mesh: PatchMesh = may_lack()
+    mesh: ResultPatchMesh = may_lack()
     """The mesh; none where all that is reached is thinner than a cell."""

@@ -2,10 +2,10 @@
 
 from typing import Literal
 
-from wsrender.results.document import Count, Part, ResultDocument, RobotEntry, Share, may_lack
+from wsrender.results.document import Count, ResultDocument, ResultPart, RobotEntry, Share, may_lack
 
 
-class CountedPostures(Part):
+class CountedPostures(ResultPart):
     """Postures per voxel."""
 
     poses_of_a_voxel: Count
@@ -16,7 +16,7 @@ class CountedPostures(Part):
     """At most."""
 
 
-class Capability(Part):
+class ResultCapability(ResultPart):
     """From which directions voxels are reached."""
 
     method: str
@@ -56,5 +56,5 @@ class CapabilityResult(ResultDocument):
     """The robot."""
     voxel_size_m: float
     """Edge of a voxel [m]."""
-    capability: Capability
+    capability: ResultCapability
     """What was found."""

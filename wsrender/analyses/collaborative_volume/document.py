@@ -9,15 +9,15 @@ from wsrender.results.document import (
     Count,
     Interval,
     NamedRobot,
-    Part,
     RefinedVolume,
     ResultDocument,
-    Samples,
+    ResultPart,
+    ResultSamples,
     may_lack,
 )
 
 
-class RandomRuns(Part):
+class RandomRuns(ResultPart):
     """What was drawn."""
 
     method: Literal["random"]
@@ -28,16 +28,16 @@ class RandomRuns(Part):
     """Seed of the first."""
 
 
-class AdmittedSides(Part):
+class AdmittedSides(ResultPart):
     """What constraints admit of either arm, over all runs."""
 
-    left: Samples
+    left: ResultSamples
     """Of the left arm."""
-    right: Samples
+    right: ResultSamples
     """Of the right arm."""
 
 
-class Refinement(Part):
+class Refinement(ResultPart):
     """A division of the box."""
 
     refinement: Count
@@ -50,7 +50,7 @@ class Refinement(Part):
     """Relative to the true volume; null where that is not known, or 0."""
 
 
-class CollaborativeCells(Part):
+class CollaborativeCells(ResultPart):
     """Cells of the finest division, in the mean over the runs."""
 
     collaborative: float
@@ -59,7 +59,7 @@ class CollaborativeCells(Part):
     """On the boundary of these."""
 
 
-class CollaborativeVolume(Part):
+class CollaborativeVolume(ResultPart):
     """Volumes that both arms reach [m³]."""
 
     body_elemental: float
@@ -74,7 +74,7 @@ class CollaborativeVolume(Part):
     """Left undecided."""
 
 
-class PartsAlone(Part):
+class PartsAlone(ResultPart):
     """What of a measure is free, blocked and undecided."""
 
     free: Interval

@@ -2,17 +2,17 @@
 
 from typing import Any, Literal
 
-from wsrender.results.document import Count, NamedRobot, Pair, Part, Point, ResultDocument, may_lack
+from wsrender.results.document import Count, NamedRobot, Pair, Point, ResultDocument, ResultPart, may_lack
 
 
-class DesignMechanism(Part):
+class DesignMechanism(ResultPart):
     """The mechanism."""
 
     name: str
     """Its name."""
 
 
-class DesignParameterEntry(Part):
+class DesignParameterEntry(ResultPart):
     """A number that varies."""
 
     name: str
@@ -23,7 +23,7 @@ class DesignParameterEntry(Part):
     """Its bounds, in the unit of the field."""
 
 
-class ObjectiveEntry(Part):
+class ObjectiveEntry(ResultPart):
     """What is to be best."""
 
     name: str
@@ -40,7 +40,7 @@ class ObjectiveEntry(Part):
     """What it may be off [m]; null: the voxels' size is not known."""
 
 
-class DesignFaultEntry(Part):
+class DesignFaultEntry(ResultPart):
     """Why designs have no value."""
 
     code: str
@@ -53,7 +53,7 @@ class DesignFaultEntry(Part):
     """The first of them."""
 
 
-class DesignSearch(Part):
+class DesignSearch(ResultPart):
     """How the search went."""
 
     method: str
@@ -72,7 +72,7 @@ class DesignSearch(Part):
     """Why others have none, by kind."""
 
 
-class Design(Part):
+class Design(ResultPart):
     """A design."""
 
     parameters: dict[str, float]
@@ -85,7 +85,7 @@ class Design(Part):
     """The job document that has it."""
 
 
-class InscribedBall(Part):
+class InscribedBall(ResultPart):
     """The largest ball in a workspace."""
 
     center_m: Point
@@ -96,7 +96,7 @@ class InscribedBall(Part):
     """What no other exceeds [m]."""
 
 
-class InscribedCube(Part):
+class InscribedCube(ResultPart):
     """The largest cube in a workspace, its edges along the axes of the base."""
 
     center_m: Point
@@ -107,7 +107,7 @@ class InscribedCube(Part):
     """What no other exceeds [m]."""
 
 
-class Inscribed(Part):
+class ResultInscribed(ResultPart):
     """Largest bodies in the best design's workspace."""
 
     sphere: InscribedBall = may_lack()
@@ -133,7 +133,7 @@ class DesignOptimizationResult(ResultDocument):
     """How the search went."""
     best: Design | None
     """The best design; null: none has a value."""
-    inscribed: Inscribed = may_lack()
+    inscribed: ResultInscribed = may_lack()
     """Where objectives are exact inscribed bodies."""
     pareto: list[Design] = may_lack()
     """Of a Pareto search: designs that no other beats."""

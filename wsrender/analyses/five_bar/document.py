@@ -4,14 +4,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from wsrender.results.document import Count, Pair, Part, PlanePoint, ResultDocument
+from wsrender.results.document import Count, Pair, PlanePoint, ResultDocument, ResultPart
 
 WorkingMode = Literal["++", "+-", "-+", "--"]
 AssemblyMode = str
 Angles = Annotated[list[float], Field(min_length=4, max_length=4)]
 
 
-class FiveBarEntry(Part):
+class FiveBarEntry(ResultPart):
     """The five-bar."""
 
     name: str
@@ -26,7 +26,7 @@ class FiveBarEntry(Part):
     """Limits of θ1 and θ2 [rad]; null: the joint turns freely."""
 
 
-class LatticeSampling(Part):
+class LatticeSampling(ResultPart):
     """What was looked at."""
 
     samples: Count
@@ -35,7 +35,7 @@ class LatticeSampling(Part):
     """How."""
 
 
-class ModeWorkspace(Part):
+class ModeWorkspace(ResultPart):
     """The workspace of a working mode."""
 
     working_mode: WorkingMode
@@ -50,7 +50,7 @@ class ModeWorkspace(Part):
     """Loops of these."""
 
 
-class Aspect(Part):
+class ResultAspect(ResultPart):
     """Part of a workspace without a singular posture."""
 
     working_mode: WorkingMode
@@ -65,7 +65,7 @@ class Aspect(Part):
     """Holes in it."""
 
 
-class ModeConditioning(Part):
+class ModeConditioning(ResultPart):
     """Condition numbers in a working mode; null where nothing is reached."""
 
     working_mode: WorkingMode
@@ -84,7 +84,7 @@ class ModeConditioning(Part):
     """Mean of the inverse, of J."""
 
 
-class IsotropicPoint(Part):
+class IsotropicPoint(ResultPart):
     """A point at which J is isotropic."""
 
     working_mode: WorkingMode
@@ -95,7 +95,7 @@ class IsotropicPoint(Part):
     """θ1 … θ4 [rad]."""
 
 
-class PostureEntry(Part):
+class PostureEntry(ResultPart):
     """A posture, and its indices."""
 
     reachable: bool
@@ -145,7 +145,7 @@ class FiveBarResult(ResultDocument):
     """Edge of the cells of the Cartesian maps [m]."""
     workspaces: list[ModeWorkspace]
     """By working mode."""
-    aspects: list[Aspect]
+    aspects: list[ResultAspect]
     """Of each working mode."""
     kappa: list[ModeConditioning]
     """By working mode."""

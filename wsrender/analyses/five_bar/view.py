@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsrender.results.view.additions import Additions, lines, vectors
-from wsrender.results.view.manifest import DrawnCurves, Skeleton
+from wsrender.results.view.manifest import Skeleton, ViewCurves
 from wsrender.results.view.words import said
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def mechanisms(drawn: "Table") -> list[Skeleton]:
     ]
 
 
-def loci(table: "Table") -> list[DrawnCurves]:
+def loci(table: "Table") -> list[ViewCurves]:
     """Rows that follow each other in one curve are one line."""
     kinds, found = table["kind"], []
     same = [table[name] for name in ("kind", "working_mode", "curve", "assembly")]

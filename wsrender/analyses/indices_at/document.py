@@ -3,19 +3,19 @@
 from typing import Literal
 
 from wsrender.results.document import (
-    Choices,
     Count,
     Extremes,
-    Part,
     Rejections,
+    ResultChoices,
     ResultDocument,
+    ResultPart,
+    ResultSamples,
     RobotEntry,
-    Samples,
     may_lack,
 )
 
 
-class GivenConfigurations(Part):
+class GivenConfigurations(ResultPart):
     """What was looked at."""
 
     method: Literal["given"]
@@ -33,11 +33,11 @@ class IndicesAtResult(ResultDocument):
     """The robot."""
     sampling: GivenConfigurations
     """What was looked at."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     rejections: Rejections = may_lack()
     """Under constraints: what they reject."""
     indices: dict[str, Extremes]
     """By name, over the admitted configurations."""
-    choices: Choices
+    choices: ResultChoices
     """What makes their values unambiguous."""

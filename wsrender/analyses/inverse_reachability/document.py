@@ -2,10 +2,10 @@
 
 from typing import Literal
 
-from wsrender.results.document import Count, Part, Place, Pose, ResultDocument, RobotEntry, Share, may_lack
+from wsrender.results.document import Count, Place, Pose, ResultDocument, ResultPart, RobotEntry, Share, may_lack
 
 
-class BaseLabels(Part):
+class BaseLabels(ResultPart):
     """Base poses by label."""
 
     reachable: Count
@@ -18,7 +18,7 @@ class BaseLabels(Part):
     """It is reached, but constraints reject all configurations."""
 
 
-class BasePositions(Part):
+class BasePositions(ResultPart):
     """Positions of the base."""
 
     count: Count
@@ -29,7 +29,7 @@ class BasePositions(Part):
     """From how many it is in all."""
 
 
-class Bases(Part):
+class Bases(ResultPart):
     """Base poses, and whether the target is reached from them."""
 
     count: Count

@@ -2,10 +2,19 @@
 
 from typing import Literal
 
-from wsrender.results.document import Count, Part, Rejections, ResultDocument, RobotEntry, Samples, Share, may_lack
+from wsrender.results.document import (
+    Count,
+    Rejections,
+    ResultDocument,
+    ResultPart,
+    ResultSamples,
+    RobotEntry,
+    Share,
+    may_lack,
+)
 
 
-class FieldSampling(Part):
+class FieldSampling(ResultPart):
     """What was sampled."""
 
     method: str
@@ -14,7 +23,7 @@ class FieldSampling(Part):
     """How many."""
 
 
-class FieldLength(Part):
+class FieldLength(ResultPart):
     """The length that makes rows of a Jacobian comparable."""
 
     length_m: float
@@ -27,7 +36,7 @@ class FieldLength(Part):
     """The condition number there."""
 
 
-class Passivity(Part):
+class Passivity(ResultPart):
     """Whether a device renders the field without giving energy."""
 
     stiffness_bound_n_per_m: float
@@ -54,7 +63,7 @@ class Passivity(Part):
     """At which speed [m/s]."""
 
 
-class FieldEntry(Part):
+class FieldEntry(ResultPart):
     """The force field."""
 
     form: str
@@ -82,7 +91,7 @@ class KinetostaticFieldResult(ResultDocument):
     """The robot."""
     sampling: FieldSampling
     """What was sampled."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     rejections: Rejections = may_lack()
     """Under constraints: what they reject."""

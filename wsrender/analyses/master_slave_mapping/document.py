@@ -8,24 +8,24 @@ from wsrender.results.document import (
     Count,
     NamedRobot,
     Pair,
-    Part,
     Point,
     ResultDocument,
-    Samples,
+    ResultPart,
+    ResultSamples,
     Share,
     SurfaceEntry,
     may_lack,
 )
 
 
-class MappedSamples(Part):
+class MappedSamples(ResultPart):
     """What was sampled."""
 
     samples: Count
     """Points of both sides."""
 
 
-class ServedPositions(Part):
+class ResultServedPositions(ResultPart):
     """Sampled positions by whether a configuration that is admitted reaches them."""
 
     served: Count
@@ -36,14 +36,14 @@ class ServedPositions(Part):
     """None was found."""
 
 
-class AdmittedPositions(Samples):
+class AdmittedPositions(ResultSamples):
     """What constraints admit of a side's samples, and of their positions."""
 
-    positions: ServedPositions
+    positions: ResultServedPositions
     """Positions."""
 
 
-class MappingAdmission(Part):
+class MappingAdmission(ResultPart):
     """What constraints admit of either side that has some."""
 
     master: AdmittedPositions = may_lack()
@@ -52,7 +52,7 @@ class MappingAdmission(Part):
     """Of the slave."""
 
 
-class Mapping(Part):
+class ResultMapping(ResultPart):
     """A mapping of the slave's workspace into the master's."""
 
     scale: Point
@@ -73,7 +73,7 @@ class Mapping(Part):
     """That over the master's."""
 
 
-class MappingVolumes(Part):
+class MappingVolumes(ResultPart):
     """Volumes [m³] of the shapes around points."""
 
     master: float
@@ -84,7 +84,7 @@ class MappingVolumes(Part):
     """The mapped slave's."""
 
 
-class MappingSurfaces(Part):
+class MappingSurfaces(ResultPart):
     """Meshes of both sides."""
 
     master: SurfaceEntry
@@ -93,7 +93,7 @@ class MappingSurfaces(Part):
     """The mapped slave's."""
 
 
-class MappingSearch(Part):
+class ResultMappingSearch(ResultPart):
     """What the search tried."""
 
     found: bool
@@ -117,13 +117,13 @@ class MasterSlaveMappingResult(ResultDocument):
     """What was sampled."""
     admission: MappingAdmission = may_lack()
     """Under constraints: what they admit."""
-    mapping: Mapping
+    mapping: ResultMapping
     """The best mapping."""
-    offsets: Annotated[list[Mapping], Field(min_length=1)]
+    offsets: Annotated[list[ResultMapping], Field(min_length=1)]
     """All that were tried as they are given, and what the search found."""
     volume_m3: MappingVolumes
     """Volumes [m³]."""
     surfaces: MappingSurfaces
     """Meshes."""
-    search: MappingSearch = may_lack()
+    search: ResultMappingSearch = may_lack()
     """Where one was asked for."""

@@ -2,24 +2,24 @@
 
 from typing import Literal
 
-from wsrender.results.document import Part, ResultDocument
+from wsrender.results.document import ResultDocument, ResultPart
 
 
-class NamedMechanism(Part):
+class NamedMechanism(ResultPart):
     """The mechanism."""
 
     name: str
     """Its name."""
 
 
-class ExactVolume(Part):
+class ExactVolume(ResultPart):
     """Volume [m³]."""
 
     exact: float
     """The exact one."""
 
 
-class MethodRun(Part):
+class MethodRun(ResultPart):
     """A run of a method."""
 
     method: str

@@ -3,22 +3,22 @@
 from typing import Any, Literal
 
 from wsrender.results.document import (
-    Bounds,
     Count,
     Pair,
-    Part,
     Point,
     Pose,
+    ResultBounds,
     ResultDocument,
+    ResultPart,
+    ResultSamples,
     RobotEntry,
-    Samples,
     Share,
     SurfaceEntry,
     may_lack,
 )
 
 
-class ClosedFormLegEntry(Part):
+class ClosedFormLegEntry(ResultPart):
     """A leg with a closed form."""
 
     type: str
@@ -31,7 +31,7 @@ class ClosedFormLegEntry(Part):
     """Unit of these."""
 
 
-class SerialLegEntry(Part):
+class SerialLegEntry(ResultPart):
     """A leg that is an arm."""
 
     type: Literal["serial"]
@@ -44,7 +44,7 @@ class SerialLegEntry(Part):
     """Its joints that are driven."""
 
 
-class MechanismEntry(Part):
+class MechanismEntry(ResultPart):
     """The mechanism."""
 
     name: str
@@ -57,7 +57,7 @@ class MechanismEntry(Part):
     """Its legs."""
 
 
-class PoseSampling(Part):
+class PoseSampling(ResultPart):
     """What was looked at."""
 
     method: str
@@ -72,7 +72,7 @@ class PoseSampling(Part):
     """Poses that a numerical solution neither found nor excluded; they count as not reached."""
 
 
-class RefinedPositions(Part):
+class RefinedPositions(ResultPart):
     """A volume, area or length by uniform points, with its 95 % interval."""
 
     value: float
@@ -91,7 +91,7 @@ class RefinedPositions(Part):
     """What levels of orientations may hide."""
 
 
-class PositionVolume(Part):
+class PositionVolume(ResultPart):
     """Volumes [m³]; by voxels, or of the surfaces that bound it."""
 
     occupied: float = may_lack()
@@ -112,7 +112,7 @@ class PositionVolume(Part):
     """Of meshes of balls."""
 
 
-class FlatMeasure(Part):
+class FlatMeasure(ResultPart):
     """What is reached in a plane or on a line."""
 
     quantity: Literal["area", "length"]
@@ -129,11 +129,11 @@ class FlatMeasure(Part):
     """Its directions."""
 
 
-class NoBounds(Part):
+class NoBounds(ResultPart):
     """Of nothing."""
 
 
-class PoseIndex(Part):
+class PoseIndex(ResultPart):
     """An index over the voxels."""
 
     maximum: float
@@ -150,7 +150,7 @@ class PoseIndex(Part):
     """Its options."""
 
 
-class MatrixConditioning(Part):
+class MatrixConditioning(ResultPart):
     """Condition numbers of a matrix over the voxels."""
 
     least_condition_number: float | None
@@ -159,7 +159,7 @@ class MatrixConditioning(Part):
     """Mean of the inverse."""
 
 
-class Conditioning(Part):
+class ResultConditioning(ResultPart):
     """Condition numbers of A, B and J over the voxels."""
 
     A: MatrixConditioning
@@ -170,7 +170,7 @@ class Conditioning(Part):
     """Of J."""
 
 
-class Singularities(Part):
+class Singularities(ResultPart):
     """Where a determinant changes its sign."""
 
     determinant: str
@@ -185,7 +185,7 @@ class Singularities(Part):
     """Whether it is 0 everywhere."""
 
 
-class SingularitiesByType(Part):
+class SingularitiesByType(ResultPart):
     """Singularities of both types (Gosselin and Angeles 1990)."""
 
     type_1: Singularities
@@ -196,7 +196,7 @@ class SingularitiesByType(Part):
     """Combinations of the legs' branches that are reached."""
 
 
-class OrientationWorkspace(Part):
+class OrientationWorkspace(ResultPart):
     """Orientations that are reached at a position."""
 
     position_m: Point
@@ -215,7 +215,7 @@ class OrientationWorkspace(Part):
     """What measure that is."""
 
 
-class Topology(Part):
+class ResultTopology(ResultPart):
     """The boundary as a surface."""
 
     vertices: Count
@@ -249,7 +249,7 @@ class ParallelWorkspaceResult(ResultDocument):
     """Configurations of serial joints at its base."""
     sampling: PoseSampling
     """What was looked at."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     voxel_size_m: float | None = may_lack()
     """Edge of a voxel [m]."""
@@ -259,11 +259,11 @@ class ParallelWorkspaceResult(ResultDocument):
     """Area of the boundary [m²]."""
     indices: dict[str, PoseIndex] = may_lack()
     """By name."""
-    bounds_m: Bounds | NoBounds = may_lack()
+    bounds_m: ResultBounds | NoBounds = may_lack()
     """Box around what is reached [m]."""
     flat: FlatMeasure = may_lack()
     """What is reached in a plane or on a line."""
-    conditioning: Conditioning = may_lack()
+    conditioning: ResultConditioning = may_lack()
     """Condition numbers."""
     singularities: SingularitiesByType = may_lack()
     """Singularities."""
@@ -271,7 +271,7 @@ class ParallelWorkspaceResult(ResultDocument):
     """Orientations that are reached."""
     surfaces: dict[str, SurfaceEntry] = may_lack()
     """Meshes by name."""
-    topology: Topology = may_lack()
+    topology: ResultTopology = may_lack()
     """Of the exact boundary."""
     empty: str = may_lack()
     """Why nothing is reached."""

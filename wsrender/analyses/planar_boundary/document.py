@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from wsrender.results.document import Count, Part, PlanePoint, Point, ResultDocument, RobotEntry, may_lack
+from wsrender.results.document import Count, PlanePoint, Point, ResultDocument, ResultPart, RobotEntry, may_lack
 
 
-class Plane(Part):
+class ResultPlane(ResultPart):
     """The plane of the arm, in the world."""
 
     origin_m: Point
@@ -20,7 +20,7 @@ class Plane(Part):
     """Its normal."""
 
 
-class BoundarySampling(Part):
+class BoundarySampling(ResultPart):
     """What was sampled."""
 
     method: str
@@ -29,7 +29,7 @@ class BoundarySampling(Part):
     """How many."""
 
 
-class Segment(Part):
+class ResultSegment(ResultPart):
     """A line or an arc."""
 
     kind: Literal["line", "arc"]
@@ -46,7 +46,7 @@ class Segment(Part):
     """Its angle, counter-clockwise [rad]."""
 
 
-class ExactSegment(Segment):
+class ResultExactSegment(ResultSegment):
     """A segment of the exact boundary."""
 
     generated_by: list[dict[str, str]]
@@ -55,16 +55,16 @@ class ExactSegment(Segment):
     """Configurations along it, of each of these [rad or m]."""
 
 
-class ExactLoop(Part):
+class ExactLoop(ResultPart):
     """A closed curve of the exact boundary."""
 
     hole: bool
     """Whether it bounds a hole."""
-    segments: list[ExactSegment]
+    segments: list[ResultExactSegment]
     """Its segments."""
 
 
-class RegionsBySolutions(Part):
+class RegionsBySolutions(ResultPart):
     """What is reached in so many postures."""
 
     solutions: Count
@@ -75,7 +75,7 @@ class RegionsBySolutions(Part):
     """Parts."""
 
 
-class RegionsByComponents(Part):
+class RegionsByComponents(ResultPart):
     """What is reached in so many self-motions."""
 
     components: Count
@@ -86,7 +86,7 @@ class RegionsByComponents(Part):
     """Parts."""
 
 
-class ExactPlanar(Part):
+class ExactPlanar(ResultPart):
     """The exact boundary."""
 
     dimension: Annotated[int, Field(ge=0, le=2)]
@@ -107,14 +107,14 @@ class ExactPlanar(Part):
     """Its closed curves."""
 
 
-class EstimatedLoop(Part):
+class EstimatedLoop(ResultPart):
     """A closed curve of the estimated boundary."""
 
-    segments: list[Segment]
+    segments: list[ResultSegment]
     """Its segments."""
 
 
-class EstimatedPlanar(Part):
+class EstimatedPlanar(ResultPart):
     """The boundary as samples give it."""
 
     cell_width_m: float
@@ -148,7 +148,7 @@ class PlanarBoundaryResult(ResultDocument):
     """Name of the analysis."""
     robot: RobotEntry
     """The robot."""
-    plane: Plane
+    plane: ResultPlane
     """The plane."""
     sampling: BoundarySampling
     """What was sampled."""

@@ -3,19 +3,19 @@
 from typing import Literal
 
 from wsrender.results.document import (
-    Choices,
     Count,
     Extremes,
-    Part,
     Rejections,
+    ResultChoices,
     ResultDocument,
+    ResultPart,
+    ResultSamples,
     RobotEntry,
-    Samples,
     may_lack,
 )
 
 
-class SelfMotions(Part):
+class SelfMotions(ResultPart):
     """Curves of postures."""
 
     count: Count
@@ -24,7 +24,7 @@ class SelfMotions(Part):
     """Those that end where they begin."""
 
 
-class Aspects(Part):
+class Aspects(ResultPart):
     """Which postures connect without a singular configuration."""
 
     most_of_a_pose: Count
@@ -37,7 +37,7 @@ class Aspects(Part):
     """What that rests on."""
 
 
-class FoundPostures(Part):
+class FoundPostures(ResultPart):
     """Postures of all poses together."""
 
     poses: Count
@@ -81,11 +81,11 @@ class PosturesResult(ResultDocument):
     """The robot."""
     postures: FoundPostures
     """What was found."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     rejections: Rejections = may_lack()
     """Under constraints: what they reject."""
     indices: dict[str, Extremes] = may_lack()
     """Where some were asked for, by name."""
-    choices: Choices = may_lack()
+    choices: ResultChoices = may_lack()
     """What makes their values unambiguous."""

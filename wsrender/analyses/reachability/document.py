@@ -6,15 +6,15 @@ from wsrender.results.document import (
     Count,
     Covered,
     CriterionEntry,
-    Part,
     ResultDocument,
+    ResultPart,
     RobotEntry,
     Share,
     may_lack,
 )
 
 
-class ReachedShares(Part):
+class ReachedShares(ResultPart):
     """Shares of the targets, by weight."""
 
     reachable: Share
@@ -27,7 +27,7 @@ class ReachedShares(Part):
     """Neither was found."""
 
 
-class ReachedTargets(Part):
+class ReachedTargets(ResultPart):
     """How many targets have which label."""
 
     count: Count

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from wsrender.results.document import Choices, OneOfSeveral, Part, ResultDocument
+from wsrender.results.document import OneOfSeveral, ResultChoices, ResultDocument, ResultPart
 
 
-class ComparedQuantity(Part):
+class ComparedQuantity(ResultPart):
     """A number of all robots."""
 
     quantity: str
@@ -27,7 +27,7 @@ class RobotComparisonResult(ResultDocument):
     """Name of the analysis."""
     robots: Annotated[list[OneOfSeveral], Field(min_length=2)]
     """Each by itself."""
-    choices: Choices
+    choices: ResultChoices
     """What makes the values of indices unambiguous."""
     voxel_size_m: float
     """Edge of a voxel [m]."""

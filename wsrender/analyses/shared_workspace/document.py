@@ -6,27 +6,27 @@ from pydantic import Field
 
 from wsrender.results.document import (
     Blocked,
-    Choices,
     Interval,
     OneOfSeveral,
-    Part,
-    RefinedMeasure,
+    ResultChoices,
     ResultDocument,
+    ResultPart,
+    ResultRefinedMeasure,
     SurfaceEntry,
     may_lack,
 )
 
 
-class RefinedTogether(Part):
+class RefinedTogether(ResultPart):
     """What is reached by inverse kinematics."""
 
-    any: RefinedMeasure
+    any: ResultRefinedMeasure
     """By at least one robot."""
-    shared: RefinedMeasure
+    shared: ResultRefinedMeasure
     """By at least two."""
 
 
-class MeasuredTogether(Part):
+class MeasuredTogether(ResultPart):
     """Measures by inverse kinematics, and under constraints what of the shared one is free, blocked and undecided."""
 
     refined: RefinedTogether | None
@@ -50,7 +50,7 @@ class SharedVolume(MeasuredTogether):
     """By the number of robots that reach it."""
 
 
-class SharedIndex(Part):
+class SharedIndex(ResultPart):
     """The product of an index of all robots, relative to its maxima, over the shared voxels."""
 
     maximum: float | None
@@ -66,7 +66,7 @@ class SharedWorkspaceResult(ResultDocument):
     """Name of the analysis."""
     robots: Annotated[list[OneOfSeveral], Field(min_length=2)]
     """Each by itself."""
-    choices: Choices
+    choices: ResultChoices
     """What makes the values of indices unambiguous."""
     voxel_size_m: float
     """Edge of a voxel [m]."""

@@ -7,19 +7,19 @@ from pydantic import Field
 from wsrender.results.document import (
     Count,
     NamedRobot,
-    Part,
     Place,
-    Placements,
     Point,
     Pose,
     Quaternion,
     ResultDocument,
+    ResultPart,
+    ResultPlacements,
     Share,
     may_lack,
 )
 
 
-class ServedShares(Part):
+class ServedShares(ResultPart):
     """Shares of the targets, by weight."""
 
     first: Share
@@ -34,7 +34,7 @@ class ServedShares(Part):
     """Neither was found."""
 
 
-class ServedTargets(Part):
+class ServedTargets(ResultPart):
     """Targets by which arm serves them from the best pair of placements."""
 
     count: Count
@@ -53,7 +53,7 @@ class ServedTargets(Part):
     """By weight."""
 
 
-class PlacementPairs(Part):
+class PlacementPairs(ResultPart):
     """Pairs of placements."""
 
     count: Count
@@ -75,7 +75,7 @@ class PlacedArm(Place):
     """Rows of a homogeneous matrix [m]."""
 
 
-class BestPair(Part):
+class BestPair(ResultPart):
     """The best pair of placements."""
 
     first: PlacedArm
@@ -84,16 +84,16 @@ class BestPair(Part):
     """Of the second."""
 
 
-class PlacementsOfBoth(Part):
+class PlacementsOfBoth(ResultPart):
     """Placements of either arm by itself."""
 
-    first: Placements
+    first: ResultPlacements
     """Of the first arm."""
-    second: Placements
+    second: ResultPlacements
     """Of the second."""
 
 
-class HandOverLabels(Part):
+class HandOverLabels(ResultPart):
     """Poses of a hand-over from the best pair of placements."""
 
     free: Count
@@ -106,7 +106,7 @@ class HandOverLabels(Part):
     """An arm does not reach it."""
 
 
-class BestHandOver(Part):
+class BestHandOver(ResultPart):
     """The pose of a hand-over with most room to the joints' limits."""
 
     pose: Count
@@ -123,7 +123,7 @@ class BestHandOver(Part):
     """Least room to a limit, by ranges [1]."""
 
 
-class HandOver(Part):
+class ResultHandOver(ResultPart):
     """Poses that both arms can hold at once."""
 
     poses: Count
@@ -155,5 +155,5 @@ class TwoArmPlacementResult(ResultDocument):
     """The best of them."""
     placements: PlacementsOfBoth
     """Of either arm by itself."""
-    hand_over: HandOver = may_lack()
+    hand_over: ResultHandOver = may_lack()
     """Where it was asked for."""

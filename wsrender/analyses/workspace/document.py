@@ -5,17 +5,17 @@ from typing import Literal
 from pydantic import Field
 
 from wsrender.results.document import (
-    Bounds,
-    Choices,
     Converged,
     GlobalIndices,
     IndexEntry,
     LabelCounts,
     Measured,
     NoSurface,
+    ResultBounds,
+    ResultChoices,
     ResultDocument,
+    ResultSamples,
     RobotEntry,
-    Samples,
     Sampling,
     SurfaceEntry,
     SweepRejections,
@@ -33,13 +33,13 @@ class WorkspaceResult(ResultDocument):
     """The robot."""
     sampling: Sampling
     """What was sampled."""
-    samples: Samples = may_lack()
+    samples: ResultSamples = may_lack()
     """Under constraints: what they admit."""
     rejections: SweepRejections = may_lack()
     """Under constraints: what they reject."""
     indices: dict[str, IndexEntry]
     """By name."""
-    choices: Choices
+    choices: ResultChoices
     """What makes their values unambiguous."""
     voxel_size_m: float
     """Edge of a voxel [m]."""
@@ -53,7 +53,7 @@ class WorkspaceResult(ResultDocument):
     """Labelled voxels; null where none were asked for."""
     surfaces: dict[str, SurfaceEntry | NoSurface]
     """Meshes that were asked for, by name."""
-    bounds_m: Bounds
+    bounds_m: ResultBounds
     """Box around the positions [m]."""
     global_: GlobalIndices = Field(alias="global")
     """Indices of the whole workspace."""

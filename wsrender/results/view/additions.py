@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.results.view.manifest import DrawnCurves, Mapping, Plot, Quantity, Skeleton
+from wsrender.results.view.manifest import Mapping, Plot, Quantity, Skeleton, ViewCurves
 from wsrender.results.view.words import said, unit_said
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -34,7 +34,7 @@ class Additions:
     """
 
     skeletons: Sequence[Skeleton] = ()
-    curves: Sequence[DrawnCurves] = ()
+    curves: Sequence[ViewCurves] = ()
     plots: Sequence[Plot] = ()
     arrows: Sequence[Arrows] = ()
     volumes: dict[str, VolumeData] = field(default_factory=dict)
@@ -43,7 +43,7 @@ class Additions:
     in_plane: np.ndarray = field(default_factory=lambda: np.eye(4))
 
 
-def lines(name: str, label: str, points: Sequence[np.ndarray], closed: bool = False) -> DrawnCurves:
+def lines(name: str, label: str, points: Sequence[np.ndarray], closed: bool = False) -> ViewCurves:
     """Lines through points (N, 2) or (N, 3) [m] each; those of a plane lie at z = 0."""
     return {"name": name, "label": label, "closed": closed, "points": [vectors(each) for each in points]}
 

@@ -29,7 +29,7 @@ class Data(TypedDict):
 
 
 @_strict
-class DrawnChain(TypedDict):
+class ViewChain(TypedDict):
     """One kinematic chain of n coordinates and L joints, as `wsrender.robots.chain.Chain` says it."""
 
     joints: list[str]
@@ -48,7 +48,7 @@ class DrawnChain(TypedDict):
 
 
 @_strict
-class DrawnLink(TypedDict):
+class ViewLink(TypedDict):
     """Bodies in one frame: 0 is the base, k + 1 the frame of joint k after its motion."""
 
     name: str
@@ -66,12 +66,12 @@ class Samples(TypedDict):
 
 
 @_strict
-class DrawnRobot(TypedDict):
+class ViewRobot(TypedDict):
     """A robot whose motion the page computes."""
 
     name: str
-    chain: DrawnChain
-    links: list[DrawnLink]
+    chain: ViewChain
+    links: list[ViewLink]
     home: list[float]
     samples: NotRequired[Samples]
 
@@ -135,7 +135,7 @@ class Volume(TypedDict):
 
 
 @_strict
-class DrawnMesh(TypedDict):
+class ViewMesh(TypedDict):
     """Triangles."""
 
     name: str
@@ -146,7 +146,7 @@ class DrawnMesh(TypedDict):
 
 
 @_strict
-class DrawnPoints(TypedDict):
+class ViewPoints(TypedDict):
     """Points, quantised to a box: uint16 triples from lower to upper."""
 
     name: str
@@ -170,7 +170,7 @@ class Glyphs(TypedDict):
 
 
 @_strict
-class DrawnCurves(TypedDict):
+class ViewCurves(TypedDict):
     """Lines through points."""
 
     name: str
@@ -268,13 +268,13 @@ class Manifest(TypedDict):
     headline: list[Fact]
     warnings: list[str]
     job: Any
-    robots: list[DrawnRobot]
+    robots: list[ViewRobot]
     skeletons: list[Skeleton]
     volumes: list[Volume]
-    meshes: list[DrawnMesh]
-    points: list[DrawnPoints]
+    meshes: list[ViewMesh]
+    points: list[ViewPoints]
     glyphs: list[Glyphs]
-    curves: list[DrawnCurves]
+    curves: list[ViewCurves]
     maps: list[FloorMap]
     plots: list[Plot]
     mapping: Mapping | None

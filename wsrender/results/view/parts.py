@@ -10,7 +10,7 @@ from wsrender.documents.placements import COORDINATES
 from wsrender.results.presentation import CURVES
 from wsrender.results.view.additions import Arrows, curve_plot, lines, quantity, vectors
 from wsrender.results.view.blobs import Blobs, Encoding
-from wsrender.results.view.manifest import DrawnCurves, DrawnPoints, FloorMap, Glyphs, Plot, Skeleton
+from wsrender.results.view.manifest import FloorMap, Glyphs, Plot, Skeleton, ViewCurves, ViewPoints
 from wsrender.results.view.volumes import channel
 from wsrender.results.view.words import said, unit_said
 from wsrender.volume.distribution_map import DistributionMap
@@ -32,7 +32,7 @@ def add_points(
     tables: Mapping[str, Table],
     encoding: Encoding,
     omitted: list[str],
-) -> list[DrawnPoints]:
+) -> list[ViewPoints]:
     """Sampled positions with their indices, and the rows of tables that have a position."""
     found: list[tuple[str, np.ndarray, dict[str, np.ndarray], Mapping[str, str]]] = []
     if samples is not None and len(samples):
@@ -70,7 +70,7 @@ def _points(
     units: Mapping[str, str],
     encoding: Encoding,
     omitted: list[str],
-) -> DrawnPoints | None:
+) -> ViewPoints | None:
     kept = np.flatnonzero(np.isfinite(position).all(axis=1))
     if len(kept) > MOST_POINTS:
         omitted.append(f"{len(kept) - MOST_POINTS:,} of {len(kept):,} points of {name}: {MOST_POINTS:,} are shown")
@@ -141,7 +141,7 @@ def skeletons(skeleton: np.ndarray | None, legs: int, names: Sequence[str]) -> l
     ]
 
 
-def arcs_and_lines(name: str, table: Table, frame: np.ndarray) -> DrawnCurves:
+def arcs_and_lines(name: str, table: Table, frame: np.ndarray) -> ViewCurves:
     """The loops of a table of lines and arcs in the xy plane of a frame (4, 4)."""
     loops = []
     for number in np.unique(table["loop"]):

@@ -13,7 +13,7 @@ from wsrender.errors import WsrenderError
 from wsrender.results.presentation import imported, presentation_of
 from wsrender.results.view.additions import lines
 from wsrender.results.view.blobs import Blobs
-from wsrender.results.view.manifest import DrawnChain, DrawnCurves, DrawnLink, DrawnMesh, DrawnRobot, Number
+from wsrender.results.view.manifest import Number, ViewChain, ViewCurves, ViewLink, ViewMesh, ViewRobot
 from wsrender.results.view.stance import stance
 from wsrender.results.view.surfaces import ColoredMesh, glb
 from wsrender.robot import Robot as Arm
@@ -54,11 +54,11 @@ def shown_alone(robot: Arm) -> ShownArm:
     return ShownArm(robot, robot.name, robot.chain.T_world_base, stance(robot.chain))
 
 
-def add_robot(blobs: Blobs, number: int, arm: ShownArm, omitted: list[str]) -> DrawnRobot:
+def add_robot(blobs: Blobs, number: int, arm: ShownArm, omitted: list[str]) -> ViewRobot:
     """The entry of a robot; ``omitted`` is told why it has no bodies."""
     bodies = _bodies(arm, omitted)
     chain = arm.robot.chain.geometry if bodies is None else bodies.chain
-    entry: DrawnRobot = {
+    entry: ViewRobot = {
         "name": arm.name,
         "chain": chain_entry(arm.robot, chain, arm.T_world_base),
         "links": [] if bodies is None else list(_links(blobs, number, bodies)),
@@ -69,7 +69,7 @@ def add_robot(blobs: Blobs, number: int, arm: ShownArm, omitted: list[str]) -> D
     return entry
 
 
-def chain_entry(robot: Arm, chain: Any, T_world_base: np.ndarray) -> DrawnChain:
+def chain_entry(robot: Arm, chain: Any, T_world_base: np.ndarray) -> ViewChain:
     """The arrays of a chain; its tool is in ``T_tip``, and ``T_tool`` alone. Limits are those of the robot."""
     return {
         "joints": list(robot.joint_names),
@@ -103,7 +103,7 @@ def _bodies(arm: ShownArm, omitted: list[str]) -> Bodies | None:
             return None
 
 
-def _links(blobs: Blobs, number: int, bodies: Bodies) -> Iterator[DrawnLink]:
+def _links(blobs: Blobs, number: int, bodies: Bodies) -> Iterator[ViewLink]:
     """A link for each body that has shapes, in the frame that carries it."""
     by_body: dict[tuple[str, int], list[Shape]] = {}
     for shape in bodies.shapes:
@@ -231,7 +231,7 @@ def _rows(robot: Arm, table: Table) -> np.ndarray:
     return np.stack([table[column] for column in columns], axis=1).astype(float)
 
 
-def self_motions(arm: ShownArm, table: Table, omitted: list[str]) -> list[DrawnCurves]:
+def self_motions(arm: ShownArm, table: Table, omitted: list[str]) -> list[ViewCurves]:
     """The ways of the joints that move while the tip is held, of each curve of a table of self-motions."""
     q, chain = _rows(arm.robot, table), arm.robot.chain.geometry
     if chain is None or not len(q):
@@ -276,7 +276,7 @@ def environments_in(part: Any) -> Iterator[Environment]:
 
 def add_environment(
     blobs: Blobs, document: Mapping[str, Any], lower: np.ndarray, upper: np.ndarray, omitted: list[str]
-) -> list[DrawnMesh]:
+) -> list[ViewMesh]:
     """What stands around in a result's job as one mesh; ``omitted`` is told why it cannot be shown."""
     if document.get("job") is None:
         return []
@@ -289,7 +289,7 @@ def add_environment(
 
 def surroundings(
     blobs: Blobs, environments: Iterable[Environment], lower: np.ndarray, upper: np.ndarray
-) -> list[DrawnMesh]:
+) -> list[ViewMesh]:
     """What stands around as one mesh, if anything does; half-spaces are plates below the box lower … upper [m].
 
     Raises InputError, ModelError for what cannot be had.

@@ -19,7 +19,7 @@ from wsrender.results.view.additions import Additions
 from wsrender.results.view.blobs import Blobs, Encoding
 from wsrender.results.view.container import message, within
 from wsrender.results.view.edited import Edited
-from wsrender.results.view.manifest import DrawnMesh, Manifest, Role
+from wsrender.results.view.manifest import Manifest, Role, ViewMesh
 from wsrender.results.view.robots import (
     ShownArm,
     add_environment,
@@ -185,7 +185,7 @@ def _facts(document: dict[str, Any]) -> Iterator[dict[str, str]]:
 
 def _meshes(
     blobs: Blobs, meshes: "Mapping[str, trimesh.Trimesh]", faces: Mapping[str, Faces], omitted: list[str]
-) -> Iterator[DrawnMesh]:
+) -> Iterator[ViewMesh]:
     for k, (name, mesh) in enumerate(meshes.items()):
         if len(mesh.faces) > MOST_TRIANGLES:
             omitted.append(f"{name}: it has {len(mesh.faces):,} triangles; at most {MOST_TRIANGLES:,} are shown")
