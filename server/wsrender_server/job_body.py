@@ -260,7 +260,7 @@ def submission_examples() -> dict[str, dict[str, Any]]:
     """Bodies of submissions that run as they are, by name: one of each analysis, and one with options beside it."""
     examples = {name: given for name, job in job_classes().items() if (given := _example(job)) is not None}
     options = {"labels": {"study": "wrist-1"}, "priority": -1, "timeout_s": 60}
-    examples["with_options"] = {"job": examples["indices_at"], **options}
+    examples["with_options"] = {"job": examples["workspace"], **options}
     return {name: {"summary": name.replace("_", " ").capitalize(), "value": given} for name, given in examples.items()}
 
 

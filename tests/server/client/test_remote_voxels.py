@@ -12,7 +12,7 @@ from tests.results.export.sample_data import random_volume
 from tests.server.client.recorded_server import refuses, says
 from wsrender.client.range_file import BLOCK_BYTES
 from wsrender.results.result import Result
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 
 xarray = pytest.importorskip("xarray")
 SHAPE = (90, 80, 70)
@@ -23,7 +23,7 @@ FILE = "/v1/jobs/j1/artifacts/volume.vtkhdf"
 def local(tmp_path_factory):
     folder = tmp_path_factory.mktemp("local") / "out"
     heat = Table({"x_m": np.repeat([0.5, 1.5], 2), "y_m": np.tile([0.5, 1.5], 2), "heat": np.arange(4.0)},
-                 {"x_m": "m", "y_m": "m"}, Grid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2)))  # fmt: skip
+                 {"x_m": "m", "y_m": "m"}, CellGrid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2)))  # fmt: skip
     result = Result(
         {"analysis": "workspace", "robot": {"name": "arm"}, "sampling": {"method": "sobol", "samples": 8}},
         volume=random_volume(SHAPE),

@@ -92,5 +92,5 @@ def test_the_client_sends_what_the_server_declares(client, jobs, result_folder):
         jobs.complete(job.id, result_folder)
         assert [each.id for each in mine.jobs(state="succeeded", analysis="workspace", label=("study", "wrist"))]
         result = job.wait().result()
-        assert result.volume is not None and result._files.local("volume.vtkhdf", "npz").exists()
+        assert result.volume is not None and result.files.local("volume.vtkhdf", "npz").exists()
         assert mine.robots() and mine.workers() and mine.analyses()

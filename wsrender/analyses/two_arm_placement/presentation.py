@@ -33,7 +33,7 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 _CAPTION = "Targets by which of the arms serves them from the best pair of placements"
 PRESENTATION = Presentation(
-    (Picture("shares", f"{_HERE}:shares", _CAPTION, ("tables.targets",), ("skeleton",)),),
+    (Picture("shares", f"{_HERE}:shares", _CAPTION, ("tables.targets",), ("skeleton", "tables")),),
     facts,
     measured="",
 )
