@@ -250,8 +250,8 @@ def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client
     state.wait_for()
     page.get_by_role("button", name=f"Retry job {short}").click()
     page.get_by_role("button", name=f"Cancel job {short}").click()
+    until(lambda: client.job(job.id).state == "canceled")
     state.wait_for()
-    assert client.job(job.id).state == "canceled"
     page.get_by_role("button", name=f"Delete job {short}").click()
     page.get_by_role("button", name=f"Really delete job {short}").click()
     row.wait_for(state="detached")
