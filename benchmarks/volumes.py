@@ -17,11 +17,11 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, articulated, spherical_pair
 from wsrender.documents.constraints import Constraints
-from wsrender.reach import Event, VolumeEstimate, refined_volume, refined_volumes
+from wsrender.reach import Inside, VolumeEstimate, refined_volume, refined_volumes
 from wsrender.reach.measure_refinement import free_measures
 from wsrender.robot.constraints import constraints_for
 
-EVENTS = {"any": Event(1, 2), "both": Event(2, 2)}
+EVENTS = {"any": Inside(1, 2), "both": Inside(2, 2)}
 
 
 def pairs() -> dict[str, tuple[list[ws.Robot], dict[str, float], float]]:

@@ -94,6 +94,7 @@ def examples(planar) -> dict[str, Any]:
         "BoundaryBiased": ws.BoundaryBiased(1000, locked={f"joint{k}": 0.1 * k for k in range(50)}),
         "Box": ws.Box(size_m=(1, 2, 3), name="table" * 10),
         "Capsule": ws.Capsule(radius_m=0.1, length_m=0.3),
+        "AsyncClient": ws.AsyncClient(),
         "Client": ws.Client(),
         "Converge": ws.Converge(),
         "ConvexMesh": ws.ConvexMesh(vertices_m=long),

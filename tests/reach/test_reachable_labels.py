@@ -182,7 +182,7 @@ def test_arrays_of_any_layout():
         ("points", "targets.csv", "not an array of numbers"),
         ("orientations", [[1, 0, 0, 0], [np.inf, 0, 0, 0]], "row 1 has a value that is not finite"),
         ("orientations", [[0, 1, 0, 0], [0, 0, 1e-7, 0]], "row 1 has length 0"),
-        ("orientations", [[1, 0, 0, 0]], "1 rows for 2 points"),
+        ("orientations", [[1, 0, 0, 0]] * 3, "3 rows for 2 points"),
         ("position_tolerance_m", -1, "greater than 0"),
         ("angle_tolerance_rad", 0, "greater than 0"),
         ("threads", 0, "whole number"),

@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, dh_arm, slide, tool
-from wsrender.reach import Event, refined_measure, refined_measures
+from wsrender.reach import Inside, refined_measure, refined_measures
 
 TURNED = ws.Transform(position_m=(1, 2, 3), rpy_deg=(20, 30, 40))
 UPRIGHT = ws.Transform(position_m=(0, 0, 1), rpy_deg=(90, 0, 0))
@@ -155,7 +155,7 @@ def two_rings(apart, height=0.0):
     return [hinges(0.2, 0.2, placement=place).chain for place in there]
 
 
-EVENTS = {"any": Event(1, 2), "all": Event(2, 2)}
+EVENTS = {"any": Inside(1, 2), "all": Inside(2, 2)}
 
 
 def test_what_two_planar_arms_share_is_an_area():

@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, articulated, spherical_pair
-from wsrender.reach import Event, refined_volume, refined_volumes
+from wsrender.reach import Inside, refined_volume, refined_volumes
 from wsrender.reach.measure_refinement import refined_measure
 from wsrender.reach.reached_set import FalseNegatives, hidden_share
 
@@ -48,7 +48,7 @@ def test_pairs(name):
         y, z = placed["position_m"][1:]
         placement = ws.Transform(**{**placed, "position_m": (x, y, z)})
         pair.append(ws.load_robot(name, placement=placement).chain)
-    events = {"any": Event(1, 2), "all": Event(2, 2), "exactly_1": Event(1, 1, precise=False)}
+    events = {"any": Inside(1, 2), "all": Inside(2, 2), "exactly_1": Inside(1, 1, precise=False)}
     volumes = refined_volumes(pair, events, 0.01).volumes
     for event, volume in zip(("any", "all"), exact, strict=True):
         assert volumes[event].low - 5e-5 <= volume <= volumes[event].high + 5e-5

@@ -9,7 +9,7 @@ from wsrender.results import drawing
 from wsrender.results.drawing.color_scale import color_scale
 from wsrender.results.drawing.style import new_figure
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import CellGrid, Table
 from wsrender.volume.volume_data import VolumeData
 
 VALUES = np.random.default_rng(0).uniform(2.0, 3.0, 1000)
@@ -100,11 +100,11 @@ def test_the_axes_of_counts_have_whole_ticks(most):
     x = np.linspace(-0.5, 0.5, 5)
     counts = np.resize(np.arange(most + 1), 25)
     counts[-1] = most
-    grid = Grid(("x_m", "y_m"), (-0.6, -0.6), (0.2, 0.2), (5, 5))
+    grid = CellGrid(("x_m", "y_m"), (-0.6, -0.6), (0.2, 0.2), (5, 5))
     units = {"x_m": "m", "y_m": "m"}
     whole = {"x_m": np.repeat(x, 5), "y_m": np.tile(x, 5), "served": counts}
     row = {"x_m": np.linspace(-0.5, 0.5, 25), "served": counts}
-    line = Table(row, {"x_m": "m"}, grid=Grid(("x_m",), (-0.5,), (0.04,), (25,)))
+    line = Table(row, {"x_m": "m"}, grid=CellGrid(("x_m",), (-0.5,), (0.04,), (25,)))
     samples = DistributionMap(np.zeros((25, 3)), {"postures": counts.astype(float)})
     front = Table({"served": counts, "dexterity": np.arange(25.0)}, {"dexterity": "1"})
     found = [
