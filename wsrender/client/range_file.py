@@ -7,7 +7,7 @@ import httpx2
 
 from wsrender.client.connection import Connection
 from wsrender.client.requests import Request, asked
-from wsrender.errors import ServerError, WsrenderError
+from wsrender.errors import ServerError
 
 BLOCK_BYTES = 1 << 16
 KEPT_BLOCKS = 512  # of the newest; a reader that comes back finds them
@@ -16,8 +16,9 @@ KEPT_BLOCKS = 512  # of the newest; a reader that comes back finds them
 class RangeFile(io.RawIOBase):
     """Reads ``path`` by ranges, whole blocks at a time, of which the newest are kept.
 
-    ``etag`` is what the file must still be. ``bytes_read`` counts what was downloaded. Reading raises ServerError where
-    the file is another one by now, ServerConnectionError, NotFoundError.
+    ``etag`` is what the file must still be. ``bytes_read`` counts what was downloaded. Reading raises nothing, for HDF5
+    passes no exception on: once it has failed, it gives zeros for ever, which are nobody's data. So whoever reads asks
+    `check` afterwards.
     """
 
     def __init__(self, connection: Connection, path: str, etag: str, size: int):
@@ -25,8 +26,19 @@ class RangeFile(io.RawIOBase):
         self._blocks: OrderedDict[int, bytes] = OrderedDict()
         self._at = 0
         self.bytes_read = 0
-        self.error: WsrenderError | None = None
-        """Why reading failed: libraries in C do not pass on what is raised."""
+        self._error: BaseException | None = None
+
+    def check(self) -> None:
+        """Raise why reading failed, if it did.
+
+        ServerError where the file is another one by now or the server gives no ranges, ServerConnectionError,
+        NotFoundError.
+        """
+        error = self._error
+        if error is not None:
+            if not isinstance(error, Exception):  # Ctrl-C is said once
+                self._error = ServerError(f"{self._path}: reading was interrupted; open it again")
+            raise error from None
 
     def readable(self) -> bool:
         """It is."""
@@ -49,13 +61,14 @@ class RangeFile(io.RawIOBase):
         """Fill the buffer as far as there is something; the number of bytes."""
         view = memoryview(buffer).cast("B")
         wanted = min(len(view), max(self._size - self._at, 0))
-        if wanted:
+        content = bytes(wanted)
+        if wanted and self._error is None:
             try:
-                view[:wanted] = self._bytes(self._at, self._at + wanted)
-            except WsrenderError as error:
-                self.error = error
-                raise
-            self._at += wanted
+                content = self._bytes(self._at, self._at + wanted)
+            except BaseException as error:  # Ctrl-C, too, must not pass through HDF5
+                self._error = error
+        view[:wanted] = content
+        self._at += wanted
         return wanted
 
     def _bytes(self, begin: int, end: int) -> bytes:

@@ -5,9 +5,9 @@ import threading
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,8 @@ import structlog
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from wsrender_server.jobs.background import in_background
+from wsrender_server.jobs.clock import Clock
 from wsrender_server.jobs.faults import InvalidTransition, StoreUnavailable
 from wsrender_server.jobs.records import ENDED, UNFINISHED, ComputationState
 from wsrender_server.jobs.sole_use import check_bound
@@ -48,24 +50,16 @@ class Retention:
     def __init__(self, store: JobStore, settings: Settings):
         self.store = store
         self.settings = settings
-        self._made = datetime.now(UTC), time.monotonic()
+        self._clock = Clock()
 
-    @contextmanager
-    def running(self) -> Iterator[None]:
+    def running(self) -> AbstractContextManager[None]:
         """Sweep every ``retention_interval_s`` in a thread, for as long as the block lasts."""
-        end = threading.Event()
-        thread = threading.Thread(target=self._loop, args=(end,), name="retention", daemon=True)
-        thread.start()
-        try:
-            yield
-        finally:
-            end.set()
-            thread.join()
+        return in_background("retention", self._loop)
 
     def due(self, now: datetime | None = None) -> list[Removal]:
         """What is to go, in the order in which it goes; nothing is changed. Raises StoreUnavailable."""
         check_bound(self.store.transactions, self.store.files)  # a folder of others has no file too many
-        now = now or self._now()
+        now = now or self._clock.now()
         folders = {
             kind: self._entries(kind) for kind in ("partials", "results", "models", "documents")
         }  # before the rows
@@ -96,11 +90,6 @@ class Retention:
         if removal.what == "model":
             return store.forget_model_file(removal.id)
         return store.forget_files(removal.id)
-
-    def _now(self) -> datetime:
-        """The time by which ages count: a clock that jumps ahead while this runs makes nothing old."""
-        time_then, seconds_then = self._made
-        return min(datetime.now(UTC), time_then + timedelta(seconds=time.monotonic() - seconds_then))
 
     def _loop(self, end: threading.Event) -> None:
         while not end.wait(self.settings.retention_interval_s):
@@ -156,7 +145,7 @@ class Retention:
 
     def _files(self, session: Session, folders: dict[str, list[Path]]) -> Iterator[Removal]:
         """Files of what has no result, after a while where a retry goes on from them, and those that no row names."""
-        now = self._now().timestamp()
+        now = self._clock.now().timestamp()
         states = {row.id: row for row in session.execute(select(Computation.id, Computation.state, Computation.owner))}
         models = set(session.scalars(select(Model.sha256)))
         for kind, path in [(each, path) for each in ("partials", "results") for path in folders[each]]:

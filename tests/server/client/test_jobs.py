@@ -198,6 +198,7 @@ def test_file_that_changed_during_a_download_starts_anew(finished, client, local
     path = "/v1/jobs/j1/artifacts/volume.vtkhdf"
     finished.answer("GET", path, serves(other, breaks=[700]), serves(folder / "volume.vtkhdf"))
     assert_same_volume(client.job("j1").result().volume, expected.volume)
+    assert [request.headers.get("Range") for request in finished.sent("GET", path)] == [None, "bytes=700-"]
 
 
 def test_damaged_files_are_refused(finished, client, local, tmp_path):

@@ -2,6 +2,8 @@
 
 import hashlib
 import re
+import subprocess
+import sys
 
 import httpx2
 import numpy as np
@@ -10,7 +12,7 @@ import pytest
 import wsrender as ws
 from tests.results.export.sample_data import random_volume
 from tests.server.client.recorded_server import refuses, says
-from wsrender.client.range_file import BLOCK_BYTES
+from wsrender.client.range_file import BLOCK_BYTES, RangeFile
 from wsrender.results.result import Result
 from wsrender.volume.table import CellGrid, Table
 
@@ -151,3 +153,61 @@ def test_a_file_that_is_none_is_refused(remote, server, local):
     server.answer("GET", FILE, ranged(content, f'"{remote.files.records["volume.vtkhdf"]["sha256"]}"'))
     with pytest.raises(ws.InputError, match="volume: cannot be read as volume data"):
         remote.to_xarray()
+
+
+ENDS = """
+import sys
+
+import httpx2
+
+import wsrender as ws
+from tests.server.client.recorded_server import RecordedServer, says
+from tests.server.client.test_remote_voxels import FILE
+
+server = RecordedServer()
+server.answer("GET", "/v1/jobs/j1", says({"id": "j1", "state": "succeeded"}))
+record = {"name": "volume.vtkhdf", "sha256": "0" * 64, "bytes": 1 << 20}
+document = {"analysis": "workspace", "robot": {"name": "arm"}, "format": 2, "artifacts": [record]}
+server.answer("GET", "/v1/jobs/j1/result", says(document))
+server.answer("GET", FILE, httpx2.ReadError("reset"))
+with ws.Client("http://lab:8000", transport=server, patience_s=0.0) as client:
+    result = client.job("j1").result()
+    try:
+        result.to_xarray()
+    except ws.ServerConnectionError as error:
+        kept = error  # with its traceback, as a notebook keeps the last one
+        sys.exit(3)
+"""
+
+
+def test_a_process_whose_download_failed_ends_as_it_should():
+    """HDF5 crashed after the interpreter's end, of what a traceback had kept."""
+    ended = subprocess.run([sys.executable, "-c", ENDS], capture_output=True, text=True, timeout=120)
+    assert (ended.returncode, ended.stderr) == (3, "")
+
+
+@pytest.fixture
+def file(server):
+    """Eight bytes of the server."""
+    with ws.Client("http://lab:8000", transport=server, patience_s=0.0) as client:
+        yield RangeFile(client._connection, FILE, '"e"', 8)
+
+
+def test_a_failed_download_stays_failed(file, server):
+    """Zeros that HDF5 was given instead are never taken for data."""
+    server.answer("GET", FILE, httpx2.ReadError("reset"), (206, {}, b"12345678"))
+    file.check()
+    assert file.read(4) == bytes(4)
+    for _ in range(2):
+        with pytest.raises(ws.ServerConnectionError, match="lost the server"):
+            file.check()
+    assert file.read(4) == bytes(4) and file.bytes_read == 0
+
+
+def test_ctrl_c_is_said_once(file, server):
+    server.answer("GET", FILE, KeyboardInterrupt())
+    assert file.read(4) == bytes(4)
+    with pytest.raises(KeyboardInterrupt):
+        file.check()
+    with pytest.raises(ws.ServerError, match=f"{FILE}: reading was interrupted; open it again"):
+        file.check()

@@ -9,7 +9,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from sqlalchemy import event
 from sqlalchemy.exc import OperationalError
-from wsrender_server.jobs import retention as times
+from wsrender_server.jobs import clock
 from wsrender_server.jobs.faults import InvalidTransition, QuotaExceeded, StoreUnavailable
 from wsrender_server.jobs.records import JobState
 from wsrender_server.jobs.retention import UPLOAD_S, Retention
@@ -66,8 +66,8 @@ EXPIRED, KEPT = JobState.EXPIRED, JobState.SUCCEEDED
 def test_a_clock_that_jumps_ahead_makes_nothing_old(store, retention, monkeypatch):
     (job,) = results(store, 10)
     running = retention(keep_results_s=86400, keep_jobs_s=86400)
-    monkeypatch.setattr(times, "datetime", Jumped)
-    monkeypatch.setattr(times.time, "time", lambda: Jumped.now(UTC).timestamp())
+    monkeypatch.setattr(clock, "datetime", Jumped)
+    monkeypatch.setattr(clock.time, "time", lambda: Jumped.now(UTC).timestamp())
     assert not running.sweep() and states(store, "ann", job) == [KEPT]
     assert retention(keep_results_s=86400).due(), "by the clock that a new process finds, it is old"
 

@@ -411,15 +411,22 @@ def test_waits_double_up_to_an_hour_and_are_random(store):
 
 
 def test_a_clock_that_jumps_ahead_gives_nothing_up(store, monkeypatch):
-    deliveries, now = Deliveries(store, Settings()), datetime.now(UTC)
+    deliveries, now, settled = Deliveries(store, Settings()), datetime.now(UTC), []
 
     class Ahead(datetime):
         @classmethod
         def now(cls, tz=None):
             return now + timedelta(days=300)
 
-    monkeypatch.setattr("wsrender_server.jobs.webhooks.deliveries.datetime", Ahead)
-    assert deliveries._now() < now + timedelta(hours=1)
+    monkeypatch.setattr("wsrender_server.jobs.clock.datetime", Ahead)
+    monkeypatch.setattr(store, "settle_deliveries", lambda outcomes, waits, too_old: settled.append(too_old))
+
+    async def settle():
+        attempt = asyncio.create_task(asyncio.sleep(0, "an outcome"))
+        await deliveries._settle({attempt: message("http://lab")}, 1.0, asyncio.ALL_COMPLETED)
+
+    asyncio.run(settle())
+    assert settled[0] < now + timedelta(hours=1) - timedelta(seconds=Settings().webhook_give_up_s)
 
 
 def test_deliveries_go_on_after_failures_and_a_restart(store, document):

@@ -7,11 +7,13 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime, timedelta
 
 import structlog
 
+from wsrender_server.jobs.background import in_background
+from wsrender_server.jobs.clock import Clock
 from wsrender_server.jobs.faults import StoreUnavailable
 from wsrender_server.jobs.records import DeliveryRecord
 from wsrender_server.jobs.webhooks.sender import Sender
@@ -37,19 +39,11 @@ class Deliveries:
 
     def __init__(self, store: WebhookStore, settings: Settings, tls: ssl.SSLContext | None = None):
         self._store, self._settings, self._tls = store, settings, tls
-        self._made = datetime.now(UTC), time.monotonic()
+        self._clock = Clock()
 
-    @contextmanager
-    def running(self) -> Iterator[None]:
+    def running(self) -> AbstractContextManager[None]:
         """Deliver in a thread, for as long as the block lasts."""
-        end = threading.Event()
-        thread = threading.Thread(target=self._loop, args=(end,), name="webhooks", daemon=True)
-        thread.start()
-        try:
-            yield
-        finally:
-            end.set()
-            thread.join()
+        return in_background("webhooks", self._loop)
 
     def wait_s(self, attempts: int) -> float:
         """The time to the next attempt after so many that failed before this one [s].
@@ -96,15 +90,10 @@ class Deliveries:
         outcomes = {attempts[attempt]: attempt.result() for attempt in done}
         if outcomes:
             waits = {each: self.wait_s(each.attempts) for each in outcomes}
-            too_old = self._now() - timedelta(seconds=self._settings.webhook_give_up_s)
+            too_old = self._clock.now() - timedelta(seconds=self._settings.webhook_give_up_s)
             await asyncio.to_thread(self._store.settle_deliveries, outcomes, waits, too_old)
         for attempt in done:  # after they are recorded: until then they are due, and must not be sent again
             del attempts[attempt]
-
-    def _now(self) -> datetime:
-        """The time by which ages count: a clock that jumps ahead while this runs makes nothing old."""
-        time_then, seconds_then = self._made
-        return min(datetime.now(UTC), time_then + timedelta(seconds=time.monotonic() - seconds_then))
 
 
 def _next(due: list[DeliveryRecord], attempts: Attempts) -> Iterator[DeliveryRecord]:
