@@ -250,7 +250,7 @@ def reachability(
 @runs("postures")
 def all_postures(
     robot: RobotLike,
-    position_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    position_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     *,
     base: str | None = None,
     tip: str | None = None,
@@ -269,6 +269,7 @@ def all_postures(
     device: str = "auto",
     quat_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     free_axis: Literal["x", "y", "z"] | None = None,
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
     windings: int = 1,
     starts: int = 512,
     curve_step: float = 0.05,
@@ -287,7 +288,8 @@ def all_postures(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``position_m``: Positions of the tip in the world frame, rows of x, y, z, or a single one [m].
+    ``position_m``: Positions of the tip in the world frame, rows of x, y, z, or a single one [m]; None: targets are
+        given.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
@@ -306,6 +308,9 @@ def all_postures(
     ``quat_wxyz``: Orientations, a quaternion w, x, y, z of unit length for each position, or one for all; None: any
         orientation will do.
     ``free_axis``: Axis of the tip about which it may turn as it likes; None: none.
+    ``targets``: Instead of position_m and quat_wxyz: targets one by one, or as a table in a file, {"path":
+        "holes.csv"}, or a volume to cover. All say an orientation or none does, and one free axis serves all; their
+        weights and tolerances change nothing, for postures are those of the pose itself.
     ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
     ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
     ``curve_step``: Between points of self-motions: largest change of a joint, about [rad, reaches].

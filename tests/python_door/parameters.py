@@ -11,6 +11,7 @@ FIRST = {
     "workspace": ("robot", "sampling", "indices", "task"),
     "indices_at": ("robot", "configurations"),
     "base_placement": ("robot", "points_m", "quats_wxyz"),
+    "postures": ("robot", "position_m"),
     "reachability": ("robot", "points_m", "quats_wxyz"),
     "two_arm_placement": ("points_m", "quats_wxyz"),
     "kinetostatic_field": ("robot", "sampling"),

@@ -69,6 +69,8 @@ def test_names_that_were_there_stay():
         ws.analyze: ["robot", "sampling", "indices", "task"],
         ws.kinetostatic_field: ["robot", "sampling"],
         ws.planar_boundary: ["robot", "sampling"],
+        ws.all_postures: ["robot", "position_m"],
+        ws.reachability: ["robot", "points_m", "quats_wxyz"],
         ws.shared_workspace: ["robots", "sampling"],
         ws.robot_comparison: ["robots", "sampling"],
         ws.collaborative_volume: ["left", "right"],

@@ -88,9 +88,16 @@ def targets_of_job(job: ListedTargets, center: Callable[[np.ndarray], np.ndarray
     """
     if job.targets is None:
         return listed_targets(np.array(job.points_m), None if job.quats_wxyz is None else np.array(job.quats_wxyz))
-    found = target_list(job.targets)
-    if isinstance(job.targets, TargetTable):
-        check_unit(found, job.targets, center(found.position), reach)
+    return checked_targets(job.targets, center, reach)
+
+
+def checked_targets(
+    targets: tuple[Target, ...] | TargetTable | TargetVolume, center: Callable[[np.ndarray], np.ndarray], reach: float
+) -> TargetList:
+    """The ``targets`` of a job document; see `targets_of_job`."""
+    found = target_list(targets)
+    if isinstance(targets, TargetTable):
+        check_unit(found, targets, center(found.position), reach)
     return found
 
 

@@ -1,5 +1,6 @@
 """The analysis ``postures``: a job document in, tables of postures and poses out."""
 
+import hashlib
 from time import process_time
 
 import numpy as np
@@ -162,3 +163,72 @@ def test_estimated_seconds_are_those_of_closed_forms_and_searches(robot, count):
     began = process_time()
     run_shard(whole, 0)
     assert 0.25 < (whole.cost.seconds - one.cost.seconds) / (process_time() - began) < 4  # of CPU time
+
+
+def written(folder, rows, header="x_m,y_m,z_m,qw,qx,qy,qz,name"):
+    path = folder / "holes.csv"
+    path.write_text("\n".join([header, *rows]))
+    return path
+
+
+def test_a_table_gives_what_the_lists_give(tmp_path):
+    listed = execute(JOB)
+    rows = [
+        ",".join(map(str, (*position, *quat, f"hole {k}")))
+        for k, (position, quat) in enumerate(zip(*POSES.values(), strict=True))
+    ]
+    path = written(tmp_path, rows)
+    job = {name: value for name, value in JOB.items() if name not in POSES}
+    found = execute(job | {"targets": {"path": str(path)}})
+    assert found.tables["poses"]["name"].tolist() == ["hole 0", "hole 1", "hole 2"]
+    for table in ("poses", "postures"):
+        for name in listed.tables[table].columns:
+            np.testing.assert_array_equal(found.tables[table][name], listed.tables[table][name])
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert found.document["provenance"]["targets_sha256"] == digest
+    assert "targets_sha256" not in listed.document["provenance"]
+    one_by_one = [{"position_m": p, "quat_wxyz": q} for p, q in zip(*POSES.values(), strict=True)]
+    again = execute(job | {"targets": one_by_one})
+    np.testing.assert_array_equal(again.tables["postures"]["pose"], listed.tables["postures"]["pose"])
+    assert "name" not in again.tables["poses"].columns
+    assert ws.all_postures("ur5e", targets=str(path), device="cpu").document["postures"] == found.document["postures"]
+
+
+def test_an_axis_serves_all_targets(tmp_path):
+    rows = ["0.4,0.2,0.3,0,1,0,0", "0.1,0.4,0.4,0,1,0,0"]
+    path = {"path": str(written(tmp_path, rows, "x_m,y_m,z_m,qw,qx,qy,qz"))}
+    job = {"analysis": "postures", "robot": "scara", "device": "cpu", "free_axis": "z"}
+    listed = execute(job | {"position_m": [[0.4, 0.2, 0.3], [0.1, 0.4, 0.4]], "quat_wxyz": [0, 1, 0, 0]})
+    found = execute(job | {"targets": path})
+    assert found.document["postures"] == listed.document["postures"] and found.document["postures"]["evidence"]
+    own = [{"position_m": [0.4, 0.2, 0.3], "quat_wxyz": [0, 1, 0, 0], "free_axis": "z"}]
+    told = execute({**job, "free_axis": None, "targets": own}).document["postures"]
+    assert told == execute(job | {"targets": [{**own[0], "free_axis": None}]}).document["postures"]
+
+
+TURNED = {"position_m": [0.4, 0.2, 0.3], "quat_wxyz": [0, 1, 0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"targets": [TURNED], "position_m": [[0, 0, 1]]}, 'position_m.*or else "targets": one of the two'),
+        ({"targets": [TURNED], "quat_wxyz": [1, 0, 0, 0]}, 'quat_wxyz.*must not be given without "position_m"'),
+        ({}, 'position_m.*must be given, or else "targets"'),
+        ({"targets": [TURNED, {"position_m": [0, 0, 1]}]}, "target 1 and target 0 differ in their orientation"),
+        ({"targets": [TURNED, TURNED | {"free_axis": "z"}]}, "target 1 and target 0 differ in their free axis"),
+        ({"targets": [TURNED | {"free_axis": "z"}], "free_axis": "x"}, "free_axis.*target 0 has another one"),
+        ({"targets": [TURNED, {"position_m": [0, 0, 1]}], "free_axis": "x"}, "free_axis.*target 1 says no orientation"),
+        ({"targets": {"path": "none.csv"}}, "targets.path.*none.csv cannot be read"),
+        ({"targets": [{"position_m": [400, 200]}]}, "targets.*position_m"),
+    ],
+)  # fmt: skip
+def test_targets_that_do_not_go_together(change, message):
+    with pytest.raises((ws.DocumentError, ws.InputError), match=message):
+        plan({"analysis": "postures", "robot": "ur5e", "device": "cpu"} | change)
+
+
+def test_a_table_in_millimetres_is_told(tmp_path):
+    path = str(written(tmp_path, ["400,200,300", "500,200,300"], "x_m,y_m,z_m"))
+    with pytest.raises(ws.InputError, match=r"targets.length_unit_m.*millimetres\?"):
+        plan({"analysis": "postures", "robot": "ur5e", "targets": {"path": path}})

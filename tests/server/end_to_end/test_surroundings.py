@@ -46,6 +46,17 @@ def test_a_table_travels_to_placements(client, tmp_path):
     assert np.array_equal(result.tables["placements"]["served_bits"], local.tables["placements"]["served_bits"])
 
 
+def test_a_table_travels_to_postures(client, tmp_path):
+    table = tmp_path / "holes.csv"
+    table.write_text("name,x_m,y_m,z_m,qw,qx,qy,qz\na,0.4,0.2,0.3,0,1,0,0\nb,2,0,0,0,1,0,0\n")
+    document = {"analysis": "postures", "robot": "ur5e", "targets": {"path": str(table)}, "device": "cpu"}
+    local, result = ws.execute(document), client.submit(document).wait(timeout=PATIENCE_S).result()
+    assert result.document["postures"] == local.document["postures"]
+    assert result.document["provenance"]["targets_sha256"] == hashlib.sha256(table.read_bytes()).hexdigest()
+    assert result.tables["poses"]["name"].tolist() == ["a", "b"]
+    assert np.array_equal(result.tables["postures"]["q_joint1"], local.tables["postures"]["q_joint1"])
+
+
 def test_arrays_travel(client, tmp_path):
     """The bits of the same numbers in the document; what a file holds wrongly is said by field, file and row."""
     rows = np.random.default_rng(2).uniform(-1, 1, (500, 6))

@@ -11,7 +11,7 @@ from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument, example
 from wsrender.documents.options import IndexChoices, IndicesOrNone, Precision
 from wsrender.documents.quantities import Seed, integer, real
-from wsrender.documents.target_lists import UNIT, is_none
+from wsrender.documents.target_lists import UNIT, ListOrTable, is_none
 from wsrender.documents.targets import Points, Quaternions
 
 
@@ -30,17 +30,21 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
         quat_wxyz=[0.0, 1.0, 0.0, 0.0],
     )
 
-    long_fields: ClassVar[tuple[str, ...]] = ("position_m", "quat_wxyz")
+    long_fields: ClassVar[tuple[str, ...]] = ("position_m", "quat_wxyz", "targets")
 
     analysis: Literal["postures"] = "postures"
     """Name of the analysis."""
-    position_m: Points
-    """Positions of the tip in the world frame, rows of x, y, z, or a single one [m]."""
+    position_m: Points | None = None
+    """Positions of the tip in the world frame, rows of x, y, z, or a single one [m]; null: targets are given."""
     quat_wxyz: Quaternions | None = None
     """Orientations, a quaternion w, x, y, z of unit length for each position, or one for all; null: any
     orientation will do."""
     free_axis: Annotated[Literal["x", "y", "z"] | None, Field(exclude_if=is_none)] = None
     """Axis of the tip about which it may turn as it likes; null: none."""
+    targets: Annotated[ListOrTable | None, Field(exclude_if=is_none)] = None
+    """Instead of position_m and quat_wxyz: targets one by one, or as a table in a file, {"path": "holes.csv"}, or a
+    volume to cover. All say an orientation or none does, and one free axis serves all; their weights and tolerances
+    change nothing, for postures are those of the pose itself."""
     windings: Annotated[int, Field(ge=1, le=4096), BeforeValidator(integer)] = 1
     """How many configurations of a posture are listed that differ by whole turns of hinges; all are counted."""
     starts: Annotated[int, Field(ge=1, le=65536), BeforeValidator(integer)] = 512
@@ -59,6 +63,12 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
+        if (self.position_m is None) == (self.targets is None):
+            yield "position_m", 'must be given, or else "targets": one of the two'
+        if self.position_m is None:
+            if self.quat_wxyz is not None:
+                yield "quat_wxyz", 'must not be given without "position_m": targets say their own orientations'
+            return
         if self.quat_wxyz is None:
             if self.free_axis is not None:
                 yield "free_axis", 'must not be given without "quat_wxyz", of which it is an axis'

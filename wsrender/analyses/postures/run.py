@@ -1,6 +1,7 @@
 """The analysis ``postures``: all configurations of given poses, and what is said of each."""
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from itertools import islice
 from typing import Any
@@ -22,6 +23,7 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.postures.job import PosturesJob
 from wsrender.analyses.provenance import index_choices
+from wsrender.documents.target_lists import TargetTable, TargetVolume
 from wsrender.engine import evaluate_samples, units_of
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
@@ -40,6 +42,7 @@ from wsrender.reach.posture_sets import (
     poses_of,
 )
 from wsrender.reach.self_motions import STEP
+from wsrender.reach.target_list import TargetList, checked_targets, listed_targets
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.links import bodies_in, coarse_faces
@@ -70,6 +73,10 @@ OF_CURVES = ("curve_pose", "curve_posture", "point", "closed", "singular", "poin
 OF_POSES = ("asked", "aspects", "proven", "cuspidal", "complete", "found", "configurations")
 
 
+def _refuse(field: str, rows: np.ndarray, message: str) -> None:
+    raise InputError(field, f"target {int(np.argmax(rows))} {message}")
+
+
 class PosturesAnalysis(Analysis):
     """A planned ``postures`` job: its samples are the poses."""
 
@@ -79,7 +86,30 @@ class PosturesAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for constraints and indices that are not for such a robot."""
         _ = self.constraints, self.evaluation, self.job.aspects and self.finder
-        return Settled(device, target, ((0, len(self.job.position_m)),), shard_unit=1)
+        return Settled(device, target, ((0, len(self.targets)),), shard_unit=1)
+
+    @cached_property
+    def targets(self) -> TargetList:
+        """The poses; raises InputError for a table that cannot be read, and for targets that ask for several things."""
+        job, chain, axis = self.job, self.robot.chain, self.job.free_axis or ""
+        if job.targets is None:
+            listed = listed_targets(np.array(job.position_m), job.quat_wxyz and np.array(job.quat_wxyz))
+            return replace(listed, free_axis=np.full(len(listed), axis))
+        found = checked_targets(job.targets, lambda position: chain.center, chain.reach)
+        if axis and not found.oriented.all():
+            _refuse("free_axis", ~found.oriented, "says no orientation, of which it would be an axis")
+        if axis and (others := (found.free_axis != "") & (found.free_axis != axis)).any():
+            _refuse("free_axis", others, "has another one of its own")
+        found = replace(found, free_axis=np.where(found.free_axis == "", axis, found.free_axis))
+        for what, asked in (("orientation", found.oriented), ("free axis", found.free_axis)):
+            if (others := asked != asked[0]).any():
+                _refuse("targets", others, f"and target 0 differ in their {what}; postures are of one kind of pose")
+        return found
+
+    @property
+    def _quat(self) -> np.ndarray | None:
+        """Orientations (N, 4); None where any will do."""
+        return self.targets.quat_wxyz if self.targets.oriented.any() else None
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -94,8 +124,8 @@ class PosturesAnalysis(Analysis):
     @cached_property
     def solver(self) -> PostureSolver:
         """What finds postures."""
-        job = self.job
-        asked, options = kind_of(job.quat_wxyz, job.free_axis), {"starts": job.starts, "curve_step": job.curve_step}
+        job, free_axis = self.job, str(self.targets.free_axis[0]) or None
+        asked, options = kind_of(self._quat, free_axis), {"starts": job.starts, "curve_step": job.curve_step}
         return PostureSolver(self.robot.chain, **asked, **options, seed=job.seed)
 
     @cached_property
@@ -112,8 +142,8 @@ class PosturesAnalysis(Analysis):
     @property
     def cost(self) -> Cost:
         """Poses, their postures and the search for those that no closed form knows."""
-        job, solver, count, n = self.job, self.solver, len(self.job.position_m), self.robot.chain.n
-        listed = 3 if job.quat_wxyz is None else 7
+        job, solver, count, n = self.job, self.solver, len(self.targets), self.robot.chain.n
+        listed = 0 if isinstance(job.targets, TargetTable | TargetVolume) else 3 if self._quat is None else 7
         postures = self._expected * count
         rows = postures * min(job.windings, float(np.maximum(self._turns, 1).prod()))
         row = ROW_BYTES + 8 * (n + len(self.evaluation.indices))
@@ -152,8 +182,8 @@ class PosturesAnalysis(Analysis):
     @cached_property
     def _expected(self) -> float:
         """Postures of a pose: of those without limits the share of the hinges' turns, and of poses within reach."""
-        job, chain = self.job, self.robot.chain
-        near = float((np.linalg.norm(job.position_m - chain.center, axis=1) <= chain.reach).mean())
+        chain = self.robot.chain
+        near = float((np.linalg.norm(self.targets.position - chain.center, axis=1) <= chain.reach).mean())
         if self._spare > 1 and not self.solver.form:
             return MOST_OF_FAMILIES * near
         branches = OF_POSITIONS if self.solver.kind == "position" else BRANCHES
@@ -169,8 +199,8 @@ class PosturesAnalysis(Analysis):
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """The shard's postures: arrays OF_POSTURES, a row for each configuration that is listed, and OF_POSES."""
         first, count = self.shards[shard]
-        own, quat = slice(first, first + count), self.job.quat_wxyz
-        T = poses_of(self.job.position_m[own], None if quat is None else quat[own])
+        own, quat = slice(first, first + count), self._quat
+        T = poses_of(self.targets.position[own], None if quat is None else quat[own])
         self.solver.device, self.solver.threads = self.device, execution.threads
         found = self.solver.solve(T, tell)
         wound = [list(islice(found.wound(k), self.job.windings)) for k in range(len(found))]
@@ -297,6 +327,7 @@ class PosturesAnalysis(Analysis):
         bodies = bodies_in(self.robot, partial["q"][shown]) if len(shown) else None
         return Draft(
             entries,
+            provenance=self.targets.provenance,
             notices=self.evaluation.notices,
             tables={
                 "postures": self._postures(partial),
@@ -352,9 +383,10 @@ class PosturesAnalysis(Analysis):
         return dict(zip(names, q.T, strict=True)), dict(zip(names, units, strict=True))
 
     def _poses(self, partial: PartialResult) -> Table:
-        columns = {"position": np.array(self.job.position_m)}
-        if self.job.quat_wxyz is not None:
-            columns["quat_wxyz"] = np.array(self.job.quat_wxyz)
+        columns = {"name": self.targets.name} if (self.targets.name != "").any() else {}
+        columns["position"] = self.targets.position
+        if self._quat is not None:
+            columns["quat_wxyz"] = self._quat
         columns |= {"postures": partial["found"], "configurations": partial["configurations"]}
         if self.constraints:
             free = (partial["winding"] == 0) & (partial["rejected"] == 0)
