@@ -61,10 +61,17 @@ def test_version(wsrender):
 
 
 def test_schema(wsrender):
-    code, out, _ = wsrender("schema", "--analysis", "indices_at")
+    code, out, _ = wsrender("schema", "indices_at")
     assert (code, json.loads(out)["title"]) == (0, "IndicesAtJob")
+    assert (
+        wsrender("schema", "--analysis", "indices_at")
+        == (0, out, "")
+        == wsrender("schema", "indices_at", "--analysis", "indices_at")
+    )
+    code, _, err = wsrender("schema", "workspace", "--analysis", "indices_at")
+    assert (code, err) == (2, "error: analysis: is given twice, as workspace and as indices_at\n")
     assert json.loads(wsrender("schema")[1])["discriminator"]["propertyName"] == "analysis"
-    code, _, err = wsrender("schema", "--analysis", "nope")
+    code, _, err = wsrender("schema", "nope")
     assert (code, err) == (2, f'error: analysis: must be one of {quoted(job_classes())}, not "nope"\n')
 
 

@@ -226,7 +226,15 @@ def test_a_unit_of_the_user_may_follow_from_the_task():
 
 @pytest.mark.parametrize(
     ("text", "pretty"),
-    [("m^3", "m³"), ("1/(kg^3 m^15)", "1/(kg³ m¹⁵)"), ("m^(2/3)", "m^(2/3)"), ("mixed (m^2, 1)", "mixed (m², 1)")],
+    [
+        ("m^3", "m³"),
+        ("1/(kg^3 m^15)", "1/(kg³ m¹⁵)"),
+        ("m^(2/3)", "m^(2/3)"),
+        ("mixed (m^2, 1)", "mixed (m², 1)"),
+        ("m3", "m³"),
+        ("deg/s", "°/s"),
+        ("m/s^2", "m/s²"),
+    ],
 )
 def test_units_for_people(text, pretty):
     assert pretty_unit(text) == pretty

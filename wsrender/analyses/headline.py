@@ -3,9 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from wsrender.volume.measure import UNITS
-
-NOT_ASKED = "refined_volume is null: none was asked for"
+from wsrender.volume.measure import NOT_ASKED, UNITS
 
 
 def headline_of(measure: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -23,6 +23,13 @@ def job(incomplete: str) -> list[str]:
     return _beginning(incomplete, library.names()) + _files(incomplete)
 
 
+def analyses(incomplete: str) -> list[str]:
+    """Names of analyses."""
+    from wsrender.analyses.registry import job_classes
+
+    return _beginning(incomplete, job_classes())
+
+
 def sampling(incomplete: str) -> list[str]:
     """Methods of sampling."""
     from wsrender.documents.sampling import METHODS

@@ -10,7 +10,9 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from wsrender.cli import completion
 from wsrender.cli.faults import one_line_faults
+from wsrender.errors import InputError
 
 if TYPE_CHECKING:
     from wsrender.robots.library import LibraryRobot
@@ -70,10 +72,16 @@ def _plain(robots: "list[LibraryRobot]") -> list[dict[str, Any]]:
 
 
 def schema(
-    analysis: Annotated[str | None, typer.Option(help="Only the job documents of this analysis.")] = None,
+    analysis: Annotated[
+        str | None,
+        typer.Argument(help="Only the job documents of this analysis.", autocompletion=completion.analyses),
+    ] = None,
+    named: Annotated[str | None, typer.Option("--analysis", hidden=True)] = None,
 ) -> None:
     """Print the JSON Schema of job documents, with every default."""
     with one_line_faults():
         from wsrender.analyses.jobs import job_schema
 
-        typer.echo(json.dumps(job_schema(analysis), indent=2))
+        if analysis and named and analysis != named:
+            raise InputError("analysis", f"is given twice, as {analysis} and as {named}")
+        typer.echo(json.dumps(job_schema(analysis or named), indent=2))

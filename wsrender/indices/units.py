@@ -147,7 +147,8 @@ def _matrix(rows: list[Dimension], columns: list[Dimension], held: np.ndarray) -
 
 
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-_EXPONENT = re.compile(r"\^(-?\d+)")
+_EXPONENT = re.compile(r"\^(-?\d+)|(?<=\bm)(\d)\b")
+_DEGREES = re.compile(r"\bdeg\b")
 UnitRule = Callable[[TaskMatrix], Dimension]
 """An index's unit from those of the task matrix, such as ``lambda A: A.value``, that of a singular value."""
 
@@ -167,5 +168,8 @@ def unit_text(unit: str | UnitRule, matrix: TaskMatrix) -> str:
 
 
 def pretty_unit(unit: str) -> str:
-    """A unit of a result as people write it: ``m³`` for ``m^3``, ``1/(kg m²)`` for ``1/(kg m^2)``."""
-    return _EXPONENT.sub(lambda found: found[1].translate(_RAISED), unit)
+    """A unit of a result as people write it, the same everywhere: ``m³`` for ``m^3``, ``°`` for ``deg``.
+
+    Documents have the unit of a measure as in the names of their fields, ``m3`` as in ``volume_m3``: ``m³`` too.
+    """
+    return _DEGREES.sub("°", _EXPONENT.sub(lambda found: (found[1] or found[2]).translate(_RAISED), unit))

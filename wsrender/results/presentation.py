@@ -77,17 +77,17 @@ class Presentation:
 
     ``pictures``: those of its results alone. Of a result document, ``facts`` gives lines of the summary, (name, text),
     ``title`` what stands beside robot and sampling, ``sections`` what the report shows instead of fields. ``measured``
-    says what the headline measures; "": no workspace, and the facts stand in its place. ``drawings`` names tables of
-    lines and arcs in a plane, which are saved as drawings. Of a result's `ResultPlots`, ``view`` gives what only the
-    analysis adds to its view in a browser, `wsrender.results.view.additions.Additions`; of a document, ``job`` is
-    that of the robots which the view shows.
+    says what the headline measures, of all documents or of one; "": no workspace, and the facts stand in its place.
+    ``drawings`` names tables of lines and arcs in a plane, which are saved as drawings. Of a result's `ResultPlots`,
+    ``view`` gives what only the analysis adds to its view in a browser, `wsrender.results.view.additions.Additions`; of
+    a document, ``job`` is that of the robots which the view shows.
     """
 
     pictures: tuple[Picture, ...] = ()
     facts: Callable[[Document], Iterator[tuple[str, str]]] = lambda document: iter(())
     title: Callable[[Document], list[str]] = lambda document: []
     sections: Callable[[Document], dict[str, Any]] = lambda document: {}
-    measured: str = "reachable"
+    measured: str | Callable[[Document], str] = "reachable"
     drawings: tuple[str, ...] = ()
     view: Function | None = None
     job: Callable[[Document], Any] = lambda document: document.get("job")

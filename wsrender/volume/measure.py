@@ -6,3 +6,5 @@ UNITS = {"volume": "m3", "area": "m2", "length": "m"}
 """As result documents write them."""
 TABLE_UNITS = {"m3": "m^3", "m2": "m^2", "m": "m"}
 """As tables have them."""
+NOT_ASKED = "refined_volume is null: none was asked for"
+"""Why a result has no measure with an interval, where it might have one."""

@@ -11,7 +11,7 @@ from wsrender.analyses.design_optimization.result import unit_of
     [
         (["/mechanism/platform_m"], "m"),
         (["/robot/dh/rows/1/a", "/robot/dh/rows/2/d"], "m"),
-        (["/robot/dh/rows/0/limits_deg/1"], "°"),
+        (["/robot/dh/rows/0/limits_deg/1"], "deg"),
         (["/robot/dh/rows/0/alpha"], "rad"),
         (["/mechanism/platform_m", "/robot/dh/rows/0/alpha"], ""),
         (["/robot/dh/rows/0/limits/1"], ""),  # of a slide, or of a hinge

@@ -1,6 +1,8 @@
 """What is read first of a result: its headline and its warnings, in words."""
 
 import json
+import re
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,8 @@ import wsrender as ws
 from wsrender.analyses.registry import job_classes
 from wsrender.notices import Notice
 from wsrender.results.export.headline import headline_lines, headline_text, warning_lines
+from wsrender.results.report.page import report_page
+from wsrender.volume.measure import NOT_ASKED
 
 DOCUMENTS = Path(__file__).parents[2] / "golden" / "documents"
 VOLUME = {"quantity": "volume", "value": 3.8012, "ci95": [3.7812, 3.8263], "unit": "m3", "reason": ""}
@@ -30,6 +34,7 @@ ODD = Notice("inertia_dropped", "the model has no inertias")
         ({"quantity": "area", "unit": "m2"}, "reachable area 3.80 m² (95 %: 3.78 … 3.83)"),
         ({"quantity": "length", "unit": "m", "ci95": None}, "reachable length 3.8012 m"),
         (NONE, "no volume: the tip stays on a surface"),
+        (NONE | {"reason": NOT_ASKED}, "no refined reachable volume: none was asked for by refined_volume"),
     ],
 )
 def test_headlines_in_words(fields, text):
@@ -60,6 +65,24 @@ def test_every_result_that_measures_no_workspace_says_something_of_itself(analys
     for path in DOCUMENTS.glob(f"{analysis}*.json"):
         lines = headline_lines(json.loads(path.read_text())["document"])
         assert lines and not any("measures none" in line for line in lines)
+
+
+@pytest.mark.parametrize("path", sorted(DOCUMENTS.glob("*.json")), ids=lambda path: path.stem)
+def test_units_are_written_in_one_way(path):
+    """As people write them, m³ and not m^3 or m3: in the summary, and in the report but for the job."""
+    document = json.loads(path.read_text())["document"] | {"timing_s": defaultdict(float)}  # goldens have no times
+    html = report_page("arm", {key: value for key, value in document.items() if key != "job"}, [], {})
+    shown = re.sub(r"<[^>]*>", "\n", html.partition("<body>")[2])
+    for text in (ws.Result(document).summary(), shown):
+        assert not re.search(r"\bm\^\d|\bm[23]\b|\bdeg\b", text)
+
+
+def test_a_headline_says_what_of_a_mechanism_it_measures():
+    document = {"analysis": "parallel_workspace", "kind": "dexterous", "headline": VOLUME}
+    assert headline_lines(document) == ["dexterous volume 3.80 m³ (95 %: 3.78 … 3.83)"]
+    without = document | {"headline": NONE | {"reason": NOT_ASKED}}
+    assert headline_lines(without) == ["no refined dexterous volume: none was asked for by refined_volume"]
+    assert headline_lines(document | {"kind": "constant_orientation"})[0].startswith("reachable volume 3.80 m³")
 
 
 def test_several_robots_have_a_headline_each():

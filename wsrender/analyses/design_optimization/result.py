@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 AT_BOUND = 1e-6  # of a parameter's range
 _DH_UNITS = {"a": "m", "d": "m", "alpha": "rad", "theta": "rad"}
-_ENDINGS = {"m": "m", "rad": "rad", "deg": "°", "s": "s"}  # units by the endings of fields
+_ENDINGS = {"m": "m", "rad": "rad", "deg": "deg", "s": "s"}  # units by the endings of fields
 
 
 def best_headline(plan: "DesignOptimizationAnalysis", best: dict[str, Any] | None) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from wsrender.analyses.parallel_workspace.lattice import FlatLattice
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.volume_notices import tolerance_not_met
 from wsrender.notices import Notice
+from wsrender.volume.measure import NOT_ASKED
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def workspace_headline(plan: "ParallelWorkspaceAnalysis", partial: PartialResult
     if plan.unmeasured:
         return no_headline(plan.unmeasured, name)
     if refined is None:
-        return no_headline("no refined volume was asked for: give refined_volume", name)
+        return no_headline(NOT_ASKED, name)
     return headline(name, refined["value"], refined["ci95"])
 
 

@@ -6,6 +6,7 @@ from typing import Any
 from wsrender.results.presentation import Picture, Presentation
 
 _HERE = f"{__name__.rpartition('.')[0]}.pictures"
+_MEASURED = {"dexterous": "dexterous", "total_orientation": "total-orientation"}
 _SURFACE = "wsrender.results.drawing.result_plots:ResultPlots.surface"
 
 
@@ -16,10 +17,16 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {share}"
 
 
+def measured(document: Mapping[str, Any]) -> str:
+    """Which workspace the headline measures."""
+    return _MEASURED.get(str(document.get("kind")), Presentation.measured)
+
+
 PRESENTATION = Presentation(
     (
         Picture("surface", _SURFACE, "", ("meshes.workspace",), ("tables.surfaces",), options={"mesh": "workspace"}),
         Picture("orientations", f"{_HERE}:orientations", needs=("tables.orientations",)),
     ),
     facts,
+    measured=measured,
 )

@@ -21,7 +21,7 @@ from wsrender.analyses.cost import (
     refined_seconds,
 )
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.headline import NOT_ASKED, headline_of, no_headline
+from wsrender.analyses.headline import headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import by_measure, divided, refined_together
 from wsrender.analyses.registry import planned
@@ -36,7 +36,7 @@ from wsrender.notices import Notice
 from wsrender.reach import Inside
 from wsrender.robot import Robot
 from wsrender.volume.lattice import block_of_all
-from wsrender.volume.measure import TABLE_UNITS
+from wsrender.volume.measure import NOT_ASKED, TABLE_UNITS
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 

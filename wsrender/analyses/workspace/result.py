@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Draft
-from wsrender.analyses.headline import NOT_ASKED, headline_of
+from wsrender.analyses.headline import headline_of
 from wsrender.analyses.provenance import index_choices
 from wsrender.analyses.refined import by_measure, divided
 from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
@@ -34,6 +34,7 @@ from wsrender.robot import Robot
 from wsrender.robot.constraints import samples_entry
 from wsrender.robot.rejections import check_admitted, colliding_pairs, first_rejected, lost_voxels, moved_means
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.measure import NOT_ASKED
 from wsrender.volume.volume_data import VOXEL_LABELS, VolumeData
 
 PICTURE_SAMPLES = 100_000

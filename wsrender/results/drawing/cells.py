@@ -100,4 +100,4 @@ def _ends(grid: CellGrid) -> list[tuple[float, float]]:
 
 
 def _label(column: str, cells: Table) -> str:
-    return quantity(column.rpartition("_")[0], cells.units[column].replace("deg", "°"))
+    return quantity(column.rpartition("_")[0], cells.units[column])

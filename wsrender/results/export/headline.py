@@ -4,21 +4,23 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wsrender.indices.units import pretty_unit
 from wsrender.notices import Notice
 from wsrender.results.presentation import Presentation, presentation_of
+from wsrender.volume.measure import NOT_ASKED
 
-_UNITS = {"m3": "m³", "m2": "m²", "m": "m"}
 _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
 
 
 def headline_lines(document: Mapping[str, Any]) -> list[str]:
-    """``reachable volume 3.80 m³ (95 %: 3.78 … 3.83)``, or ``no volume: <reason>``; none in results of 0.1.
+    """``reachable volume 3.80 m³ (95 %: 3.78 … 3.83)``, or why there is none, `headline_text`; none in results of 0.1.
 
     Of an analysis that measures no workspace its facts, such as ``reachable targets: 97``. Those of several robots
     follow under their names where they have one, or stand alone where each is measured.
     """
     presentation = presentation_of(document)
-    whose, found = presentation.measured, document.get("headline")
+    measured, found = presentation.measured, document.get("headline")
+    whose = measured(document) if callable(measured) else measured
     if not found:
         return []
     if not whose:
@@ -38,11 +40,16 @@ def _free(entries: Mapping[str, Any]) -> str:
 
 
 def headline_text(headline: Mapping[str, Any], whose: str = "reachable") -> str:
-    """One headline: three digits at least, and as many decimals as the half width of its interval starts with."""
+    """One headline: three digits at least, and as many decimals as the half width of its interval starts with.
+
+    Where it has no value, ``no volume: <reason>``; where it was not asked for, ``no refined reachable volume: …``.
+    """
     quantity, value, interval = headline["quantity"], headline["value"], headline.get("ci95")
+    if value is None and headline["reason"] == NOT_ASKED:
+        return f"no refined {whose} {quantity}: none was asked for by refined_volume"
     if value is None:
         return f"no {quantity}: {headline['reason']}"
-    unit, reason = _UNITS[headline["unit"]], f"; {headline['reason']}" if headline.get("reason") else ""
+    unit, reason = pretty_unit(headline["unit"]), f"; {headline['reason']}" if headline.get("reason") else ""
     if not interval or not interval[1] > interval[0]:
         return f"{whose} {quantity} {value:.6g} {unit}{' (exact)' if interval else ''}{reason}"
     decimals = math.ceil(-math.log10((interval[1] - interval[0]) / 2))

@@ -6,7 +6,7 @@ from typing import Any
 from wsrender.indices.units import pretty_unit
 from wsrender.results.export.headline import head_lines
 from wsrender.results.presentation import presentation_of
-from wsrender.volume.measure import TABLE_UNITS, UNITS
+from wsrender.volume.measure import UNITS
 
 MOST_PAIRS = 3  # told of those that collide
 _METHODS = {
@@ -109,7 +109,7 @@ def _measures(
     values: Mapping[str, Any], quantity: str, headline: Mapping[str, Any], prefix: str = ""
 ) -> Iterator[tuple[str, str]]:
     """Numbers, and values with their interval, at any depth; not the headline once more."""
-    unit, said = pretty_unit(TABLE_UNITS[UNITS[quantity]]), (headline.get("value"), headline.get("ci95"))
+    unit, said = pretty_unit(UNITS[quantity]), (headline.get("value"), headline.get("ci95"))
     for name, value in values.items():
         words = prefix + name.replace("_", " ")
         if isinstance(value, int | float):

@@ -10,7 +10,7 @@ from wsrender.indices.units import pretty_unit
 from wsrender.volume.table import Table
 
 MOST_ROWS = 40  # of a table; the file beside the report has all
-_UNITS = {"m6": "m⁶", "m3": "m³", "m2": "m²", "m": "m", "s": "s", "rad": "rad", "deg": "°"}
+_UNITS = ("m6", "m3", "m2", "m", "s", "rad", "deg")  # at the end of keys
 
 
 def label(key: str) -> str:
@@ -19,7 +19,7 @@ def label(key: str) -> str:
         return "95 % interval"
     name, _, ending = key.rpartition("_")
     if name and ending in _UNITS:
-        return f"{name.replace('_', ' ')} [{_UNITS[ending]}]"
+        return f"{name.replace('_', ' ')} [{pretty_unit(ending)}]"
     return key.replace("_", " ")
 
 
@@ -63,9 +63,7 @@ def facts_html(facts: Mapping[str, Any]) -> str:
     """Names and values, one a line; a mapping of alike mappings becomes one table."""
     if _alike(facts.values()):
         return records_html([{"": name, **record} for name, record in facts.items()])
-    rows = "".join(
-        f"<tr><th>{escape(label(key))}</th><td>{value_html(value)}</td></tr>" for key, value in facts.items()
-    )
+    rows = "".join(f"<tr><th>{escape(label(key))}</th><td>{value_html(_cell(facts, key))}</td></tr>" for key in facts)
     return f"<table class=facts>{rows}</table>"
 
 
