@@ -5,11 +5,13 @@ import json
 import sys
 import time
 import warnings
+from importlib import import_module
 from importlib.metadata import EntryPoint
 from types import ModuleType, SimpleNamespace
 
 import pytest
 import typer
+from typer.main import get_command
 
 import wsrender as ws
 from wsrender import cli, extensions
@@ -193,11 +195,16 @@ def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execu
     assert (code, err) == (2, f"error: --format: 'pickle' is not a format that can be added; {allowed}\n")
 
 
-@pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])
+@pytest.mark.parametrize("command", cli.SERVER_COMMANDS)
 def test_server_commands_name_the_pip_command(wsrender, command, monkeypatch):
     monkeypatch.setattr(extensions, "entry_points", lambda group: [])
     code, _, err = wsrender(command, "--port", "8000")
     assert (code, err) == (1, pip("The server", "server"))
+
+
+def test_every_command_of_the_server_is_known_without_it():
+    command = get_command(import_module("wsrender_server.commands").app)
+    assert set(cli.SERVER_COMMANDS) == set(command.commands)
 
 
 def test_extensions_join_the_command_line_only_where_they_are_needed(wsrender, monkeypatch):

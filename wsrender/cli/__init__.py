@@ -33,7 +33,7 @@ COMMANDS = {
 GROUPS = {"jobs": jobs}
 # Typer apps whose commands join these; loaded only where none of these is asked for.
 EXTENSIONS = "wsrender.commands"
-SERVER_COMMANDS = ("serve", "worker", "keys", "database", "demo")
+SERVER_COMMANDS = ("serve", "worker", "keys", "database", "demo", "doctor", "settings")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
