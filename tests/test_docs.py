@@ -1,10 +1,18 @@
 """What the pages of the docs show works as it is written."""
 
+import re
+from pathlib import Path
+
 import pytest
 
+import wsrender as ws
 from tests.snippets import CLONE, blocks, run
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 
 PAGES = [page for page in sorted(CLONE.glob("docs/*/*.md")) if page.stem != "ten_minutes"]  # which test_ten_minutes has
+
+ANALYSES, RESULTS = (CLONE.joinpath("docs", "start", name).read_text("utf-8") for name in ("analyses.md", "results.md"))
 
 
 def with_blocks(language):
@@ -22,3 +30,22 @@ def test_snippets_are_small(page):
     """A snippet is read at a glance."""
     for snippet in blocks(page.read_text(encoding="utf-8"), "python"):
         assert snippet.count("\n") <= 25
+
+
+def test_the_job_document_that_is_shown():
+    (example,) = blocks(ANALYSES, "json")
+    assert parse_job(example).robot.library == "phantom_omni"
+
+
+def test_every_analysis_is_listed_with_its_function():
+    listed = dict(re.findall(r"^\| `(\w+)` \| `ws\.(\w+)`", ANALYSES, flags=re.MULTILINE))
+    assert listed.keys() == job_classes().keys()
+    assert set(listed.values()) <= set(ws.__all__)
+
+
+def test_the_files_of_a_result_are_listed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ws.analyze("scara", sampling=ws.Grid(3), task=["x", "y"], voxel_size_m=0.05, keep_map=True).save("out")
+    listed = set(re.findall(r"`([\w/.]+)`", RESULTS.split("## Files")[1].split("\n\n")[1]))
+    written = {path.name for path in Path("out").iterdir()}
+    assert {name.strip("/") for name in listed} >= written

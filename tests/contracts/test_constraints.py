@@ -40,7 +40,7 @@ def test_constraints_are_taken_or_refused_by_what_takes_them(analysis, field):
 
 
 def test_these_analyses_take_them():
-    """What must not fall out of the test above: those that are told of in the README."""
+    """What must not fall out of the test above: those that the guides tell of."""
     taking = {name for name in analyses() if takes(name, "constraints") and takes(name, "environment")}
     least = {
         "workspace",

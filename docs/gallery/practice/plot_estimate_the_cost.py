@@ -2,8 +2,8 @@
 How long will this job take, and how much memory?
 =================================================
 
-A server estimates a job without running it: samples, bytes and, once it has timed such jobs, seconds. The same numbers
-are what its limits are checked against.
+``ws.run.plan`` resolves a job without running it: its estimate has samples, bytes of memory and of files, and seconds.
+A server says the same of a job document, and checks its limits against it.
 """
 
 import tempfile
@@ -21,7 +21,12 @@ job = {
     "refined_volume": None,
     "device": "cpu",
 }
+for name, value in ws.run.plan(job).estimate.items():
+    print(f"{name:13s} {value:,.3g}")
+
+# %%
+# Of a server, as the form in the browser shows it; here a server of this script's own stands in for one:
+
 with LocalServer(Path(tempfile.mkdtemp())) as server, ws.Client(server.url) as client:
     estimate = client.estimate(job)
-for name, value in estimate.items():
-    print(f"{name:22s} {type(value).__name__ if isinstance(value, dict | list) else value}")
+print({name: value for name, value in estimate.items() if not isinstance(value, dict | list)})

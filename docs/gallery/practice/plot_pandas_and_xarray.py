@@ -16,7 +16,7 @@ volume = result.to_xarray()
 print(volume)
 
 # %%
-# The mean over rings around the base's axis, in two lines:
+# The largest over rings around the base's axis, above its foot, in two lines:
 
 radius = (volume.x**2 + volume.y**2) ** 0.5
 best = volume.maximum_manipulability.groupby_bins(radius.where(volume.z > 0), bins=8).max()
