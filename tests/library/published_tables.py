@@ -55,6 +55,41 @@ def _upright(lengths: tuple[float, ...], signs: tuple[int, ...], base: float = 0
     return PublishedTable(rows, signs, base)
 
 
+def _ur(d1: float, a2: float, a3: float, d4: float, d5: float, d6: float) -> PublishedTable:
+    """UR's own table, as the Robotics Toolbox for Python has it, from ROS's `base_link`, turned by 180° about z."""
+    rows = ((1, 0, d1, 2), (0, -a2, 0, 0), (0, -a3, 0, 0), (1, 0, d4, 0), (-1, 0, d5, 0), (0, 0, d6, 0))
+    return PublishedTable(rows, (1,) * 6, modified=False)
+
+
+# Of the Robotics Toolbox for Python, after Layeghi 2017; its last frame is 0.75 mm inside the hand.
+SAWYER = PublishedTable(
+    (
+        (-1, 81, 317, 0),
+        (-1, 0, 192.5, -1),
+        (-1, 0, 400, 0),
+        (-1, 0, 168.5, 2),
+        (-1, 0, 400, 0),
+        (-1, 0, 136.3, 2),
+        (0, 0, 133.75, 0),
+    ),
+    (1, 1, 1, -1, 1, 1, 1),
+    modified=False,
+)
+# Of N. Ramezani Taghiabadi's PR2_kinematics.py, 2012: from the shoulder to the centre of the wrist.
+PR2 = PublishedTable(
+    (
+        (-1, 100, 0, 0),
+        (1, 0, 0, 1),
+        (-1, 0, 400, 0),
+        (1, 0, 0, 0),
+        (-1, 0, 321, 0),
+        (1, 0, 0, 0),
+        (0, 0, 0, 0),
+    ),
+    (1, 1, 1, 1, 1, 1, 1),
+    modified=False,
+)
+
 TABLES: dict[str, PublishedTable] = {
     "abb_crb15000_5_95": _upright((265, 0, 444, 110, 470, 0, 80, 101, 2), ABB),
     "abb_irb1200_5_90": _upright((399, 0, 448, 42, 451, 0, 0, 82, 2), ABB, base=0.1),
@@ -65,6 +100,8 @@ TABLES: dict[str, PublishedTable] = {
     "kuka_kr3_r540": _kuka(345, 20, 260, 20, 260, 75),
     "kuka_kr16_2": _kuka(675, 260, 680, -35, 670, 158),
     "kuka_kr6_r700_sixx": _kuka(400, 25, 315, 35, 365, 80),
+    "ur10": _ur(127.3, 612, 572.3, 163.941, 115.7, 92.2),
+    "ur3": _ur(151.9, 243.65, 213.25, 112.35, 85.35, 81.9),
     "yaskawa_gp7": _upright((0, 40, 445, 40, 440, 0, 0, 80, 0), FANUC, base=330),
     "yaskawa_hc10dtp": PublishedTable(
         ((1, 0, 275, 0), (0, 700, 0, 1), (1, 0, 0, 0), (1, 0, 500, 0), (-1, 0, 162, 0), (0, 0, 170, 0)),

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.library.published_chains import CHAINS
 from tests.library.published_screws import SCREWS
 from tests.library.published_tables import TABLES
 from tests.robots.model_packages import folders
@@ -78,6 +79,7 @@ def along_z(distance: float) -> np.ndarray:
 
 
 Z_OUT_OF_X = np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])  # of a flange with x outwards
+X_OUT_OF_Z = Z_OUT_OF_X.T
 Z_OUT_X_UP = np.array(
     [[0.0, 0, 1, 0], [0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]]
 )  # of the same, as ROS-Industrial turns it
@@ -134,6 +136,18 @@ def modified_dh(*rows: tuple[float, float, float]) -> Poses:
     return poses
 
 
+def between(base: np.ndarray, poses: Poses, tool: np.ndarray) -> Poses:
+    """Of a source whose first frame stands at ``base``, and whose last one holds the tool: fixed poses (4, 4)."""
+    return lambda q: base @ poses(q) @ tool
+
+
+def aside(distance: float) -> np.ndarray:
+    """A shift (4, 4) along y [m]."""
+    T = np.eye(4)
+    T[1, 3] = distance
+    return T
+
+
 XARM7 = [
     (0, 0, 0.267),
     (0, -90, 0),
@@ -143,12 +157,11 @@ XARM7 = [
     (0, 90, 0),
     (0.076, -90, 0.097),
 ]
+TO_J2S6S200 = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])  # of ssik's arm, of three fingers
 EE_LINK = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # tool0 in the older ee_link of ROS
 
 SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
-    "ur3": partial(urdf, "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
     "ur5": partial(ssik, "universal_robots.ur5", tool=EE_LINK),
-    "ur10": partial(urdf, "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
     "ur3e": partial(ssik, "universal_robots.ur3e"),
     "ur10e": partial(ssik, "universal_robots.ur10e"),
     "abb_yumi_left_arm": partial(ssik, "abb.yumi_left"),
@@ -165,11 +178,7 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "kinova_gen3_lite": partial(ssik, "kinova.gen3_lite"),
     "kinova_j2n6s300": partial(ssik, "kinova.jaco2"),
     "kinova_j2s7s300": partial(ssik, "kinova.j2s7s300"),
-    "kinova_j2s6s200": partial(
-        urdf, "kinova_description/robots/kinova.urdf", "j2s6s200_link_base", "j2s6s200_end_effector"
-    ),
-    "so100": partial(urdf, "so_arm_description/urdf/so100.urdf", "base", "gripper"),
-    "so101": partial(urdf, "so_arm_description/urdf/so101.urdf", "base_link", "gripper_link"),
+    "kinova_j2s6s200": partial(ssik, "kinova.j2s6s300", tool=TO_J2S6S200),
     "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
     "unitree_z1": partial(ssik, "unitree.z1"),
     "viperx300s": partial(ssik, "trossen.viperx300s"),
@@ -184,4 +193,4 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "fanuc_crx10ia_l": partial(ssik, "fanuc.crx10ial"),
     "fanuc_crx5ia": partial(ssik, "fanuc.crx5ia", tool=Z_OUT_X_UP),
     "fanuc_lrmate200id": partial(ssik, "fanuc.lrmate200id", tool=Z_OUT_X_UP),
-} | {name: partial(getattr, table, "poses") for name, table in (TABLES | SCREWS).items()}
+} | {name: partial(getattr, table, "poses") for name, table in (CHAINS | TABLES | SCREWS).items()}
