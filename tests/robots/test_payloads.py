@@ -14,6 +14,7 @@ LISTED = {
     "abb_yumi_left_arm": (0.5, 0.559),
     "abb_yumi_right_arm": (0.5, 0.559),
     "denso_vs060": (4, 0.605),
+    "doosan_m1013": (10, 1.3),
     "fanuc_crx10ia": (10, 1.24),
     "fanuc_crx10ia_l": (10, 1.42),
     "fanuc_lrmate200id": (7, 0.717),  # as the ARC Mate 50iD, the same arm
