@@ -20,6 +20,7 @@ LISTED = {
     "fanuc_lrmate200id": (7, 0.717),  # as the ARC Mate 50iD, the same arm
     "franka_panda": (3, 0.859),
     "kinova_gen3": (None, 0.902),
+    "kinova_gen3_6dof": (None, 0.891),
     "kinova_gen3_lite": (0.5, 0.76),
     "kinova_j2s6s200": (None, 0.984),
     "kuka_iiwa14": (14, 0.82),
@@ -29,6 +30,7 @@ LISTED = {
     "kuka_kr3_r540": (3, 0.541),
     "kuka_kr6_r700_sixx": (6, 0.7067),
     "kuka_kr6_r900_sixx": (6, 0.9015),
+    "lite6": (None, 0.44),
     "pincherx100": (0.05, 0.3),
     "pincherx150": (0.05, 0.45),
     "reactorx150": (0.1, 0.45),

@@ -13,6 +13,7 @@ from wsrender.robots import library
 
 trimesh = pytest.importorskip("trimesh")
 KUKA = "xacro/kuka_description"
+G1 = "g1_description/urdf/g1_29dof_rev_1_0.urdf"
 LINKS = ("base_link", *(f"link_{k}" for k in range(1, 7)))
 
 
