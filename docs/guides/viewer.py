@@ -40,6 +40,16 @@ SAMPLED = {"method": "sobol", "count": 1 << 17, "seed": 0}
 HOLES = [[0.5 + 0.06 * row, y, 0.12] for row in range(5) for y in (-0.03, 0.03)]
 JOBS: dict[str, dict[str, Any]] = {
     "arm": workspace({"library": "ur5e"}, best_sample="manipulability"),
+    "cell": workspace(
+        {"library": "ur5e"},
+        sampling={"method": "sobol", "count": 1 << 22, "seed": 0},
+        voxel_size_m=0.03,
+        environment={"items": [
+            {"shape": "box", "name": "table", "size_m": [1.6, 1.2, 0.05], "position_m": [0.35, 0, -0.03]},
+            {"shape": "box", "name": "shelf", "size_m": [0.3, 0.8, 0.02], "position_m": [0.65, 0, 0.45]},
+        ]},
+        constraints={"self_collision": True, "environment": {"margin_m": 0.001}},
+    ),
     "narrower": workspace({"library": "ur5e", "limits": {"joint2": [-2.2, -0.6]}}),
     "two": {
         "analysis": "shared_workspace",
@@ -84,6 +94,12 @@ def see_limits(page: Any) -> None:
     page.locator("[data-live=done]").first.wait_for()
 
 
+def close_panels(page: Any) -> None:
+    """The picture alone."""
+    for name in ("Look", "Explore"):
+        page.get_by_role("button", name=name, exact=True).click()
+
+
 def choose_an_arm(page: Any) -> None:
     """In the form, whose preview shows it."""
     page.locator("select").filter(has_text="franka_panda").first.select_option("ur5e")
@@ -100,9 +116,16 @@ class Shown:
     place: str
     look: dict[str, Any] | None = None
     gesture: Callable[[Any], None] | None = None
+    alone: bool = False  # without what stands around the stage
 
 
 SHOWN = (
+    Shown("cell", "/job/{cell}", {
+        **look(cut=[{"axis": "y", "from_m": 0.21, "to_m": None}]),
+        "camera": {"position": [0.9, -2.9, 1.3], "target": [0.15, 0, 0.38], "up": [0, 0, 1], "orthographic": False},
+        "configurations": [[2.3, -1.1, 1.7, -2.17, -1.5708, 0.0]],
+        "layers": {name: {"visible": False, "opacity": 1} for name in ("axes", "surface", "samples", "frames")},
+    }, close_panels, alone=True),
     Shown("workspace", "/job/{arm}"),
     Shown("isosurface", "/job/{arm}", look(style="isosurface", threshold=0.12)),
     Shown("slices", "/job/{arm}", {
@@ -179,7 +202,8 @@ def draw(folder: Path, names: Sequence[str] = tuple(each.name for each in SHOWN)
                 if each.gesture is not None:
                     each.gesture(page)
                     settle(page)
-                (folder / f"{each.name}_{theme}.png").write_bytes(quantised(page.screenshot()))
+                seen = page.locator(".stage").first if each.alone else page
+                (folder / f"{each.name}_{theme}.png").write_bytes(quantised(seen.screenshot()))
                 page.close()
         browser.close()
 
