@@ -13,7 +13,7 @@ import pytest
 
 from tests.library.published_chains import CHAINS
 from tests.library.published_screws import SCREWS
-from tests.library.published_tables import TABLES
+from tests.library.published_tables import SAWYER, TABLES
 from tests.robots.model_packages import folders
 
 Poses = Callable[[np.ndarray], np.ndarray]
@@ -179,6 +179,7 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "kinova_j2n6s300": partial(ssik, "kinova.jaco2"),
     "kinova_j2s7s300": partial(ssik, "kinova.j2s7s300"),
     "kinova_j2s6s200": partial(ssik, "kinova.j2s6s300", tool=TO_J2S6S200),
+    "sawyer": partial(between, np.eye(4), SAWYER.poses, turned_about_z(np.radians(80)) @ along_z(0.00075)),
     "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
     "unitree_z1": partial(ssik, "unitree.z1"),
     "viperx300s": partial(ssik, "trossen.viperx300s"),

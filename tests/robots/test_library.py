@@ -49,6 +49,11 @@ def test_the_library_has_every_robot_of_the_tables():
     assert all(library.find(name).is_file() for name in NAMES)
 
 
+def test_the_readme_of_the_project_counts_them():
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    assert f" {len(library.describe())} in the library" in readme
+
+
 def test_an_unknown_robot_is_refused_with_the_names():
     with pytest.raises(ModelError, match=r'no robot "UR-5e"; did you mean "ur5e"\? It has: .*articulated, .*ur5e'):
         library.find("UR-5e")

@@ -35,6 +35,7 @@ LISTED = {
     "pincherx150": (0.05, 0.45),
     "reactorx150": (0.1, 0.45),
     "reactorx200": (0.15, 0.55),
+    "sawyer": (4, 1.26),
     "unitree_z1": (None, 0.74),
     "ur10": (10, 1.3),
     "ur10e": (None, 1.3),  # 12.5 kg since 2021, the list has 10
