@@ -117,6 +117,8 @@ CHAINS: dict[str, PublishedChain] = {
             ((0, 0.0625, 0), (1, -1, 0, 0)),
         )
     ),
+    "baxter_left_arm": _baxter(1),
+    "baxter_right_arm": _baxter(-1),
     "so100": PublishedChain(
         (
             ((0, -0.0452, 0.0165), (0.707105, 0.707108, 0, 0)),

@@ -13,6 +13,8 @@ LISTED = {
     "abb_irb120": (3, 0.58),
     "abb_yumi_left_arm": (0.5, 0.559),
     "abb_yumi_right_arm": (0.5, 0.559),
+    "baxter_left_arm": (2.2, 1.21),
+    "baxter_right_arm": (2.2, 1.21),
     "denso_vs060": (4, 0.605),
     "doosan_m1013": (10, 1.3),
     "fanuc_crx10ia": (10, 1.24),
