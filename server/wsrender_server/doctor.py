@@ -94,7 +94,7 @@ def _permissions(settings: Settings) -> Iterator[Finding]:
     private = [path for path in (settings.tls_key_file, settings.api_key_file) if path is not None]
     for path in (settings.tls_ca_file, settings.tls_cert_file, *private):
         if path is not None and not os.access(path, os.R_OK):
-            yield Finding("permissions", f"{path} cannot be read", f"ls -l {path}")
+            yield Finding("permissions", *_unreadable(path, settings))
             return
     for path in (*private, *([folder] if folder.exists() else [])):
         if path.stat().st_mode & (OTHERS if path == folder else _open_to_others(path)):
@@ -107,6 +107,15 @@ def _permissions(settings: Settings) -> Iterator[Finding]:
     yield Finding(
         "permissions", f"{folder} is writable" + ("" if where == folder else ", and is made at the first start")
     )
+
+
+def _unreadable(path: Path, settings: Settings) -> tuple[str, str]:
+    """What is wrong with a file that cannot be read, and the command that mends it."""
+    if path.exists():
+        return f"{path} cannot be read", f"chown {os.geteuid()} {path} && chmod u+r {path}"
+    if path == settings.api_key_file:
+        return f"{path} is not there", f"(umask 077 && openssl rand -hex 24 > {path})"
+    return f"{path} is not there", f"deploy/certificates.sh {path.parent}  # makes ca.pem, cert.pem and key.pem"
 
 
 def _open_to_others(path: Path) -> int:
@@ -122,9 +131,13 @@ def _open_to_others(path: Path) -> int:
 def _store(settings: Settings) -> Iterator[Finding]:
     folder = settings.data_dir.absolute()
     free = shutil.disk_usage(next(path for path in (folder, *folder.parents) if path.exists())).free
-    found = f"{free / 2**30:.1f} GiB of disk are free in {folder}"
-    least = settings.min_free_disk_bytes
-    yield Finding("store", found, f"du -sh {folder}/*  # less than {least} bytes" if free < least else "")
+    found, least = f"{free / 2**30:.1f} GiB of disk are free in {folder}", settings.min_free_disk_bytes
+    if free >= least:
+        yield Finding("store", found)
+        return
+    week = "WSRENDER_KEEP_RESULTS_S=604800"  # results that nobody has used for so long
+    remedy = f"{week} wsrender database prune --data-dir {folder}"
+    yield Finding("store", f"{found}, less than {least / 2**30:.1f} GiB", remedy)
 
 
 def _database(settings: Settings) -> Iterator[Finding]:

@@ -118,7 +118,7 @@ class Settings(BaseSettings):
     read_timeout_s: float = Field(default=20.0, gt=0)
     """Time for the head of a request, and for its body beside its length at 16 KiB/s [s]."""
     max_connections_per_client: int = Field(default=512, ge=1)
-    """Connections that an address may have at a time."""
+    """Connections that an address may have at a time, WebSockets among them."""
 
     max_body_bytes: int = Field(default=16 * 2**20, ge=1)
     """Largest request body, but of an upload."""
@@ -175,8 +175,9 @@ class Settings(BaseSettings):
     def _no_other_variables(cls, values: Any) -> Any:
         known = [PREFIX + name.upper() for name in (*cls.model_fields, *OTHERS)]
         for name in sorted(os.environ):
-            if name.startswith(PREFIX) and name not in known and not name.startswith(f"{PREFIX}TEST_"):
-                near = "".join(f"; the nearest is {each}" for each in get_close_matches(name, known, n=1))
+            said = name.upper()  # of settings, letters of either case count
+            if said.startswith(PREFIX) and said not in known and not said.startswith(f"{PREFIX}TEST_"):
+                near = "".join(f"; the nearest is {each}" for each in get_close_matches(said, known, n=1))
                 raise ValueError(f"the environment variable {name} is none of the server's settings{near}")
         return values
 

@@ -91,7 +91,11 @@ def test_misspelt_variables_are_refused_with_the_nearest(home, wsrender, monkeyp
         monkeypatch.setenv(name, "1")
     monkeypatch.setenv("WSRENDER_MAX_STREAMS", "7")
     assert Settings().max_streams == 7
-    for wrong, near in (("WSRENDER_MAX_STREAM", "WSRENDER_MAX_STREAMS"), ("WSRENDER_DATADIR", "WSRENDER_DATA_DIR")):
+    for wrong, near in (
+        ("WSRENDER_MAX_STREAM", "WSRENDER_MAX_STREAMS"),
+        ("WSRENDER_DATADIR", "WSRENDER_DATA_DIR"),
+        ("wsrender_prot", "WSRENDER_PORT"),
+    ):
         with monkeypatch.context() as patch:
             patch.setenv(wrong, "1")
             for command in (("serve", "--port", "0"), ("keys", "list"), ("worker", "--scheduler", "tls://x:1")):

@@ -4,10 +4,12 @@ import importlib.metadata
 import json
 import socket
 import sqlite3
+import subprocess
 from contextlib import closing
 
 import pytest
 from wsrender_server import doctor
+from wsrender_server.auth import read_key_file
 from wsrender_server.settings import Settings
 
 from tests.server.conftest import free_port
@@ -62,7 +64,8 @@ def test_a_scheduler_that_is_not_there(settings, tmp_path):
     files = {f"tls_{name}_file": tmp_path / name for name in ("ca", "cert", "key")}
     cluster = Settings(**settings.model_dump() | files | {"scheduler": f"tls://127.0.0.1:{free_port()}"})
     assert "nobody listens at tls://127.0.0.1" in wrong(doctor._scheduler, cluster)[0]
-    assert wrong(doctor._permissions, cluster)[0] == f"{tmp_path}/ca cannot be read"
+    found, remedy = wrong(doctor._permissions, cluster)
+    assert found == f"{tmp_path}/ca is not there" and remedy.startswith(f"deploy/certificates.sh {tmp_path}  # ")
     for path in files.values():
         path.touch()
         path.chmod(0o644)
@@ -106,7 +109,23 @@ def test_databases(settings, tmp_path):
 
 def test_a_full_disk(settings):
     full = settings.model_copy(update={"min_free_disk_bytes": 2**60})
-    assert wrong(doctor._store, full)[1].startswith(f"du -sh {settings.data_dir}")
+    remedy = wrong(doctor._store, full)[1]
+    assert f"wsrender database prune --data-dir {settings.data_dir}" in remedy
+
+
+def test_files_that_cannot_be_read(settings, tmp_path, monkeypatch):
+    """Each remedy is typed, and then nothing is wrong any more."""
+    asked = Settings(**settings.model_dump() | {"api_key_file": tmp_path / "keys"})
+    found, remedy = wrong(doctor._permissions, asked)
+    assert found == f"{tmp_path}/keys is not there"
+    subprocess.run(remedy, shell=True, check=True)
+    assert "is writable" in next(doctor._permissions(asked)).found and len(read_key_file(tmp_path / "keys")) == 1
+    (tmp_path / "keys").chmod(0)
+    monkeypatch.setattr(doctor.os, "access", lambda path, rights: bool(path.stat().st_mode & 0o400))  # for root, too
+    found, remedy = wrong(doctor._permissions, asked)
+    assert found == f"{tmp_path}/keys cannot be read"
+    subprocess.run(remedy, shell=True, check=True)
+    assert "is writable" in next(doctor._permissions(asked)).found
 
 
 def test_packages_and_devices(settings, monkeypatch):
