@@ -2,12 +2,12 @@
 
 import asyncio
 import hashlib
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Annotated, Literal, Never
+from typing import Annotated, Any, Literal, Never, TypeVar
 
 from fastapi import Depends, Request, Security
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBasic, HTTPBasicCredentials, HTTPBearer
@@ -30,6 +30,7 @@ GRANTS: dict[str, frozenset[str]] = {
     "admin": frozenset({"read", "submit", "priority", "admin"}),
 }
 SHORTEST_SECRET = 16  # characters
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -169,6 +170,18 @@ async def until_revoked(connection: HTTPConnection, principal: Principal) -> Nev
             if not await run_in_threadpool(authenticator.admits, principal):
                 raise _unauthorized("the API key was revoked", 'Bearer error="invalid_token"')
         await asyncio.sleep(REVOKED_S)
+
+
+async def unless_revoked(connection: HTTPConnection, principal: Principal, asked: Coroutine[Any, Any, Found]) -> Found:
+    """What ``asked`` gives, however long it takes, while the key is one; raises HttpProblem 401 once it is none."""
+    answer, revoked = asyncio.create_task(asked), asyncio.create_task(until_revoked(connection, principal))
+    try:
+        await asyncio.wait((answer, revoked), return_when=asyncio.FIRST_COMPLETED)
+        return await (revoked if revoked.done() else answer)
+    finally:
+        answer.cancel()
+        revoked.cancel()
+        await asyncio.gather(answer, revoked, return_exceptions=True)
 
 
 def check_priority(principal: Principal, priority: int, pointer: str) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.auto import AutoWebSocketsProtocol
 
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
@@ -23,6 +24,19 @@ class ConnectionLimits:
         self.settings = settings
         self.open: Counter[str] = Counter()
 
+    def take(self, host: str) -> bool:
+        """Whether an address may have one more connection, which counts from now on; those of proxies do not."""
+        if self.settings.trusts(host):
+            return True
+        if self.open[host] >= self.settings.max_connections_per_client:
+            return False
+        self.open[host] += 1
+        return True
+
+    def give_back(self, host: str) -> None:
+        """Forget a connection that counted."""
+        self.open -= Counter([host])
+
 
 class Connection(H11Protocol):
     """A connection that is closed where the head of a request does not come in time, or its client has too many."""
@@ -37,13 +51,11 @@ class Connection(H11Protocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Count the connection; one too many is refused."""
         super().connection_made(transport)
-        host, settings = self.client[0] if self.client else "", self._limits.settings
-        if not settings.trusts(host):
-            if self._limits.open[host] >= settings.max_connections_per_client:
-                self._end(TOO_MANY)
-                return
-            self._limits.open[host] += 1
-            self._counted = host
+        host = _host(self.client)
+        if not self._limits.take(host):
+            self._end(TOO_MANY)
+            return
+        self._counted = host
         self._expect_head()
 
     def data_received(self, data: bytes) -> None:
@@ -58,7 +70,7 @@ class Connection(H11Protocol):
             self._expect_head()
 
     def handle_websocket_upgrade(self, event: Any) -> None:
-        """Hand the connection over to the WebSocket, which sessions count."""
+        """Hand the connection over to the WebSocket, as which it counts."""
         self._forget()
         super().handle_websocket_upgrade(event)
 
@@ -87,9 +99,29 @@ class Connection(H11Protocol):
         self._head_is_here()
         host, self._counted = self._counted, None
         if host is not None:
-            self._limits.open[host] -= 1
-            if not self._limits.open[host]:
-                del self._limits.open[host]
+            self._limits.give_back(host)
+
+
+class WebSocketConnection(AutoWebSocketsProtocol):  # pyright: ignore[reportGeneralTypeIssues, reportUntypedBaseClass]
+    """A WebSocket, which counts among the connections of its client until it ends."""
+
+    def __init__(self, *, limits: ConnectionLimits, **options: Any):
+        super().__init__(**options)
+        self._limits = limits
+
+    def connection_made(self, transport: asyncio.Transport) -> None:
+        """Count the connection, which has just been given back."""
+        super().connection_made(transport)
+        self._limits.take(_host(self.client))
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._limits.give_back(_host(self.client))
+        super().connection_lost(exc)
+
+
+def _host(client: tuple[str, int] | None) -> str:
+    return client[0] if client else ""
 
 
 class BodyLayer:

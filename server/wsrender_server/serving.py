@@ -10,7 +10,7 @@ from typing import Any
 import uvicorn
 
 from wsrender.errors import ServerConnectionError, WsrenderError
-from wsrender_server.connections import Connection, ConnectionLimits
+from wsrender_server.connections import Connection, ConnectionLimits, WebSocketConnection
 from wsrender_server.settings import Settings
 
 Application = Callable[[Any, Any, Any], Awaitable[None]]  # ASGI
@@ -54,10 +54,11 @@ def serve_until_stopped(
     # Uvicorn repeats the signal that stopped it, for whoever handled it before: nobody, the process ends by returning.
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda number, frame: None)
-    guarded = _FaultsAtStart(app)
+    guarded, limits = _FaultsAtStart(app), ConnectionLimits(settings)
     config = uvicorn.Config(
         guarded,
-        http=partial(Connection, limits=ConnectionLimits(settings)),  # pyright: ignore[reportArgumentType]
+        http=partial(Connection, limits=limits),  # pyright: ignore[reportArgumentType]
+        ws=partial(WebSocketConnection, limits=limits),  # pyright: ignore[reportArgumentType]
         proxy_headers=False,  # the settings say which proxies are trusted
         log_config=None,
         access_log=False,

@@ -15,7 +15,7 @@ from pydantic import AfterValidator
 from wsrender.analyses.registry import job_classes
 from wsrender.errors import InputError
 from wsrender_server.admission import Admitted
-from wsrender_server.auth import Principal, Reader, Submitter, check_priority
+from wsrender_server.auth import Principal, Reader, Submitter, check_priority, unless_revoked
 from wsrender_server.hosts import address
 from wsrender_server.job_body import job_body, submission_examples
 from wsrender_server.jobs.records import ENDED, JobRecord, JobState, Submission
@@ -119,7 +119,7 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
     outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
     server.metrics.submissions.labels(outcome).inc()
     if wait:
-        job = await _watched(server, principal.owner, job.id, wait, None)
+        job = await unless_revoked(request, principal, _watched(server, principal.owner, job.id, wait, None))
     headers = {"Location": address(f"/v1/jobs/{job.id}")}
     is_open = job.state not in ENDED if wait else outcome == "queued"
     if is_open:
@@ -189,6 +189,7 @@ async def get_job(
     server: Server,
     principal: Reader,
     job_id: JobId,
+    request: Request,
     response: Response,
     wait: _Wait = 0,
     after: Annotated[
@@ -199,7 +200,8 @@ async def get_job(
 
     202 says that the time is up and the job has not ended: ask again.
     """
-    job = await _watched(server, principal.owner, job_id, wait, after)
+    watched = _watched(server, principal.owner, job_id, wait, after)
+    job = await (unless_revoked(request, principal, watched) if wait else watched)
     if wait and job.state not in ENDED:
         response.status_code = 202
     return job_view(job, server.jobs.waits_for)
@@ -264,7 +266,6 @@ def _submit(
 ) -> Submission:
     document, options, owner = admitted.document, admitted.options, principal.owner
     check_priority(principal, options.priority, "#/priority")
-    told = document.sha256 if document.text is None else json.loads(document.text)
     with _one_at_a_time(at_work, owner, key):
         return server.store.submit(
             owner,
@@ -274,7 +275,7 @@ def _submit(
             priority=options.priority,
             timeout_s=options.timeout_s,  # the store applies the limits of the settings
             idempotency_key=key,
-            body_hash=_hash([told, options.model_dump()]),
+            body_hash="" if key is None else _body_hash(admitted),
         )
 
 
@@ -301,5 +302,8 @@ def _one_at_a_time(at_work: dict[tuple[str, str], object], owner: str, key: str 
         del at_work[owner, key]
 
 
-def _hash(content: Any) -> str:
+def _body_hash(admitted: Admitted) -> str:
+    document = admitted.document
+    told = document.sha256 if document.text is None else json.loads(document.text)
+    content = [told, admitted.options.model_dump()]
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

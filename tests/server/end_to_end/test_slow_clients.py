@@ -6,6 +6,7 @@ from contextlib import ExitStack
 
 import httpx2
 import pytest
+from websockets.sync.client import connect
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
@@ -109,3 +110,17 @@ def test_a_client_has_so_many_connections(opened):
     for connection in connections[3:]:
         connection.sendall(b"\r\n")
         assert b" 200 " in connection.recv(1 << 16)
+
+
+def test_websockets_are_connections_too(server, opened):
+    """Those that have said nothing yet, which no session counts; and their places are given back."""
+    request = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+    url = f"{server.url.replace('http', 'ws')}/v1/robots:view/session"
+    with ExitStack() as sockets:
+        for _ in range(MOST):
+            sockets.enter_context(connect(url, open_timeout=20))
+        assert b" 429 " in end_of(opened(b""))
+    wait_until(lambda: b" 200 " in opened(request).recv(1 << 16), 20, "the place of one that has left")
+    with ExitStack() as sockets:
+        for _ in range(MOST // 2):
+            sockets.enter_context(connect(url, open_timeout=20))
