@@ -223,8 +223,8 @@ def test_the_estimate_counts_the_points_of_a_refined_volume(monkeypatch):
     bodies = {"link_radius_m": 0.02, "environment": {"items": [POST]}}
     job = {"analysis": "parallel_workspace", "mechanism": {"library": "stewart_gough", "bodies": bodies}}
     planned = plan(job | {"voxel_size_m": 0.15, "refined_volume": 0.05})
-    partial, asked, collisions = run_shard(planned, 0), [], Solids.collisions
-    monkeypatch.setattr(Solids, "collisions", lambda own, *of: (asked.append(len(of[1])), collisions(own, *of))[1])
+    partial, asked, alone = run_shard(planned, 0), [], Solids.alone
+    monkeypatch.setattr(Solids, "alone", lambda own, *of: (asked.append(len(of[1])), alone(own, *of))[1])
     finish(planned, partial)
     without = plan(job | {"voxel_size_m": 0.15, "refined_volume": None}).cost.seconds + refined_seconds(0.05)
     assert planned.cost.seconds - without == pytest.approx(sum(asked) / APART_PER_S, rel=0.5)
@@ -418,7 +418,6 @@ def test_a_body_within_a_solid_collides_with_it():
     [
         ({"library": "master_4dof"} | THIN, "bodies", "without them, its placement at one of their values"),
         ({"library": "delta", "minimum_leg_distance_m": 0.1} | THIN, "minimum_leg_distance_m", "keep apart by them"),
-        ({"legs": [{"type": "serial", "robot": "ur5e"}]} | THIN, "bodies", 'give cranks as "RUS"'),
         ({"library": "delta", "bodies": THIN["bodies"] | {"platform": ENDLESS}}, "bodies.platform", "half-spaces"),
         ({"library": "delta", "bodies": {"link_radius_m": 0}}, "bodies.link_radius_m", "greater than 0"),
         ({"library": "delta", "bodies": {}}, "bodies.link_radius_m", "is required"),

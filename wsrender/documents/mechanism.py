@@ -60,8 +60,9 @@ class Region(Bounds):
 class MechanismBodies(Document):
     """Solids of a mechanism, which keep apart from each other and from what stands around, at every pose."""
 
-    link_radius_m: PositiveNumber
-    """Radius of links and cranks, capsules along them [m]; those of legs that share a joint may touch."""
+    link_radius_m: PositiveNumber | None = None
+    """Radius of links and cranks, capsules along them [m]; those of legs that share a joint may touch. Null where all
+    legs are serial: these keep apart with the shapes of their robots."""
     platform: Environment | None = None
     """Shapes that the platform carries, in its frame; null: none."""
     platform_gap_m: PositiveNumber | None = None
@@ -98,6 +99,11 @@ class _Mechanism(Document):
         """The legs that are robots, by path; none of a mechanism of the library."""
         return {}
 
+    @property
+    def _legs(self) -> int | None:
+        """Number of legs, where any may be serial."""
+        return None
+
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         if self.bodies is None:
@@ -105,9 +111,11 @@ class _Mechanism(Document):
         if self.before or self.after:
             remedy = "give the mechanism without them, its placement at one of their values"
             yield "bodies", f"must be null with serial joints before or after, what these carry has no bodies: {remedy}"
-        if self.serial_legs():
-            remedy = 'give cranks as "RUS", sliders as "PUS" and struts as "UPS" legs, or the arms to "workspace"'
-            yield "bodies", f'must be null with legs of the type "serial", one posture of many is known: {remedy}'
+        serial = len(self.serial_legs()) == self._legs
+        if not serial and self.bodies.link_radius_m is None:
+            yield "bodies.link_radius_m", "is required: the radius of capsules along the links of legs in closed form"
+        if serial and self.bodies.link_radius_m is not None:
+            yield "bodies.link_radius_m", "must be null: all legs are serial, and have shapes of their own"
         if self.minimum_leg_distance_m is not None:
             yield (
                 "minimum_leg_distance_m",
@@ -201,6 +209,10 @@ class LegsMechanism(_Mechanism):
     def serial_legs(self) -> dict[ArmPath, Arm]:
         """The legs that are robots, by path."""
         return {("legs", k): leg for k, leg in enumerate(self.legs) if isinstance(leg, SerialLeg)}
+
+    @property
+    def _legs(self) -> int:
+        return len(self.legs)
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

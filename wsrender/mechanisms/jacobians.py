@@ -21,6 +21,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import find
 from wsrender.mechanisms.inverse_kinematics import LegSolutions, inverse_kinematics
+from wsrender.mechanisms.keeping_apart import stand
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.serial_leg import NumericLeg
 from wsrender.volume.volume_data import VolumeData
@@ -60,13 +61,15 @@ def jacobians(mechanism: Mechanism, legs: LegSolutions, poses: np.ndarray, lengt
     diagonal = np.where(kinds == "UPS", 1.0, (n * drive).sum(axis=2))
     diagonal = np.where(np.isnan(legs.values), np.nan, diagonal)
     blocks = [(A, diagonal[..., None] * np.eye(len(kinds)))]
-    blocks += [_of_numeric(leg, poses, length_m) for leg in mechanism.numeric]
+    if mechanism.numeric:
+        rows = zip(mechanism.numeric, stand(mechanism, poses).q, strict=True)
+        blocks += [_of_numeric(leg, q, poses, length_m) for leg, q in rows]
     return Jacobians(np.concatenate([rows for rows, _ in blocks], axis=1), _block_diagonal([B for _, B in blocks]))
 
 
-def _of_numeric(leg: NumericLeg, poses: np.ndarray, length_m: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of A (N, r, 6) and block of B (N, r, a) of a leg at poses that it reaches."""
-    J = leg.jacobian(leg.solve(poses).q)
+def _of_numeric(leg: NumericLeg, q: np.ndarray, poses: np.ndarray, length_m: float) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of A (N, r, 6) and block of B (N, r, a) of a leg at configurations (N, n) that reach the poses."""
+    J = leg.jacobian(q)
     lever = leg.targets(poses)[:, :3, 3] - poses[:, :3, 3]
     S = np.broadcast_to(np.eye(6), (len(poses), 6, 6)).copy()
     S[:, :3, 3:] = np.swapaxes(np.cross(np.eye(3), lever[:, None]), 1, 2)  # ω × r, column by column

@@ -104,6 +104,7 @@ def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> 
     given = [None] * len(serial) if robots is None else robots
     name = spec.name if isinstance(spec, LegsMechanism) else spec.library
     region = spec.region
+    numeric = tuple(numeric_leg(k, leg, robot) for (k, leg), robot in zip(serial, given, strict=True))
     return Mechanism(
         name=name,
         kinds=tuple(leg.type for leg in legs),
@@ -125,8 +126,14 @@ def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> 
         constraints=_constraints(spec.minimum_leg_distance_m, legs),
         T_world_base=(spec.placement or Transform()).matrix(),
         home=spec.home.matrix() if spec.home else None,
-        numeric=tuple(numeric_leg(k, leg, robot) for (k, leg), robot in zip(serial, given, strict=True)),
-        bodies=bodies_of(spec.bodies, (spec.placement or Transform()).matrix(), _apart(legs)),
+        numeric=numeric,
+        bodies=bodies_of(
+            spec.bodies,
+            (spec.placement or Transform()).matrix(),
+            _apart(legs),
+            [(np.array(leg.base_m), np.array(leg.platform_m)) for leg in legs],
+            numeric,
+        ),
     )
 
 

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import LegTest, OrientationCounts, count_orientations, count_orientations_at, joined, poses_reached
-from wsrender.mechanisms.inverse_kinematics import LegSolutions, fault_text, inverse_kinematics
+from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
+from wsrender.mechanisms.keeping_apart import collision_at, stand
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain
@@ -168,8 +169,6 @@ def poses_labelled(
         if _joint_branches(mechanism):
             some = np.flatnonzero(fits)
             fits[some] = inverse_kinematics(mechanism, poses[some]).feasible
-        some = np.flatnonzero(fits)
-        fits[some] = bodies_apart(mechanism, poses[some])
     else:
         fits = inverse_kinematics(mechanism, poses).inside
     labels = np.where(fits, REACHABLE, UNREACHABLE).astype(np.int8)
@@ -179,30 +178,10 @@ def poses_labelled(
         asked += len(left)
         none = (labels[left] == UNREACHABLE) | (found == UNREACHABLE)
         labels[left] = np.where(none, UNREACHABLE, np.minimum(labels[left], found))
+    if mechanism.bodies:
+        left = np.flatnonzero(labels == REACHABLE)
+        labels[left] = stand(mechanism, poses[left], device=device, threads=threads).label
     return labels, asked
-
-
-def bodies_apart(mechanism: Mechanism, poses: np.ndarray) -> np.ndarray:
-    """Whether the bodies keep apart at platform poses (N, 4, 4), base frame, on some branch of the legs, (N,) bool."""
-    if mechanism.bodies is None:
-        return np.ones(len(poses), bool)
-    apart = np.zeros(len(poses), bool)
-    for branch in mechanism.on_each_branch():
-        left = np.flatnonzero(~apart)
-        legs = inverse_kinematics(branch, poses[left])
-        left, legs = left[legs.feasible], legs.at(legs.feasible)
-        apart[left] = mechanism.bodies.collisions(_segments(branch, legs), poses[left])[0] == 0
-    return apart
-
-
-def _segments(mechanism: Mechanism, legs: LegSolutions) -> list[dict[str, np.ndarray]]:
-    """The links of legs, towards the platform, and cranks, (N, 2, 3) [m] each."""
-    links = np.stack([legs.elbows, legs.joints], axis=2)
-    cranks = np.stack([np.broadcast_to(mechanism.base, legs.elbows.shape), legs.elbows], axis=2)
-    return [
-        {"link": links[:, k]} | ({"crank": cranks[:, k]} if crank > 0 else {})
-        for k, crank in enumerate(mechanism.crank)
-    ]
 
 
 def rejections(mechanism: Mechanism, poses: np.ndarray, labels: np.ndarray, **options: Any) -> tuple[int, int]:
@@ -231,13 +210,8 @@ def orientations_labelled(
 def fault_at(mechanism: Mechanism, pose: np.ndarray) -> str:
     """What keeps the mechanism from a platform pose (4, 4), base frame, in words; empty where nothing does."""
     fault = fault_text(mechanism, inverse_kinematics(mechanism, pose[None]), 0)
-    if not fault and not bodies_apart(mechanism, pose[None])[0]:
-        legs = inverse_kinematics(mechanism, pose[None])
-        assert mechanism.bodies
-        found, names = mechanism.bodies.collisions(_segments(mechanism, legs), pose[None])
-        return f"collision: {names[found[0] - 1]} come too near"
     faults: Iterable[str] = (leg.reason(pose) for leg in mechanism.numeric)
-    return fault or next((text for text in faults if text), "")
+    return fault or next((text for text in faults if text), "") or collision_at(mechanism, pose)
 
 
 def _counted(

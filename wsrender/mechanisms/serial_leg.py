@@ -8,16 +8,42 @@ import numpy as np
 from wsrender.documents.arm import dotted
 from wsrender.documents.legs import SerialLeg
 from wsrender.documents.quantities import quoted
-from wsrender.engine import evaluate_kinematics
+from wsrender.documents.sampling import Sobol
+from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.errors import InputError
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach import InverseSolver, Solutions
 from wsrender.reach.evidence import UNREACHABLE
+from wsrender.reach.posture_sets import PostureSolver
 from wsrender.reach.reached_set import tolerance_m
+from wsrender.reach.starts import towards_limits
 from wsrender.reach.targets import reasons_of
 from wsrender.robot import Robot, robot_of_spec
 from wsrender.robots.kinematics import Kinematics
 
 ANGLE_RAD = 1e-7  # residual that counts as reached
+STARTS = 32  # of the search for postures of a leg without a closed form
+
+
+@dataclass(frozen=True, eq=False)
+class LegPostures:
+    """Postures of a leg at N poses: configurations ``q`` (N, P, n), those that are ``there`` (N, P) bool.
+
+    ``complete`` (N,) bool: a closed form knows of no other.
+    """
+
+    q: np.ndarray
+    there: np.ndarray
+    complete: np.ndarray
+
+    @classmethod
+    def single(cls, q: np.ndarray) -> "LegPostures":
+        """One of a pose, of perhaps many."""
+        return cls(q[:, None], np.ones((len(q), 1), bool), np.zeros(len(q), bool))
+
+    def at(self, rows: np.ndarray) -> "LegPostures":
+        """Of some of the poses alone."""
+        return LegPostures(self.q[rows], self.there[rows], self.complete[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +87,30 @@ class NumericLeg:
         """Configurations and labels of platform poses (N, 4, 4), base frame; they depend on the pose alone."""
         return self._solver(device, threads).solve(*self._position_and_rotation(poses))
 
+    def postures(self, poses: np.ndarray, *, device: str = "cpu", threads: int | None = None) -> LegPostures:
+        """All that are known of platform poses (N, 4, 4), base frame: from a closed form, or from STARTS starts."""
+        solver = _posture_solver(self.chain, self.holds_pose, device, threads)
+        if solver.form is None or solver.redundant:
+            return self._searched(poses, device, threads)
+        found = solver.solve(self.targets(poses))
+        number = np.arange(len(found)) - np.searchsorted(found.pose, found.pose)
+        q = np.zeros((len(poses), number.max(initial=-1) + 1, self.chain.n))
+        there = np.zeros(q.shape[:2], bool)
+        q[found.pose, number], there[found.pose, number] = found.configurations, True
+        complete = found.complete & ~solver.idle.any()
+        complete[found.pose[found.family]] = False
+        return LegPostures(q, there, complete)
+
+    def _searched(self, poses: np.ndarray, device: str, threads: int | None) -> LegPostures:
+        position, rotation = self._position_and_rotation(poses)
+        starts = configurations(tip_pipeline(self.chain, Sobol(STARTS)))
+        starts[1::2] = towards_limits(self.chain, starts[1::2])
+        rotation = None if rotation is None else np.repeat(rotation, STARTS, axis=0)
+        solver = self._solver(device, threads)
+        tries = solver.tries(np.tile(starts, (len(poses), 1)), np.repeat(position, STARTS, axis=0), rotation)
+        q, there = tries.q.reshape(len(poses), STARTS, -1), tries.reached.reshape(len(poses), STARTS)
+        return LegPostures(q, there, np.zeros(len(poses), bool))
+
     def reason(self, pose: np.ndarray) -> str:
         """Why the leg does not reach a platform pose (4, 4), in words; empty where it does."""
         solver = self._solver("cpu", None)
@@ -75,10 +125,6 @@ class NumericLeg:
     def jacobian(self, q: np.ndarray) -> np.ndarray:
         """Geometric Jacobians (N, 6, n) at the tip, base axes, of configurations (N, n)."""
         return evaluate_kinematics(self.chain, q, device="cpu").jacobian
-
-    def skeleton(self, pose: np.ndarray) -> np.ndarray:
-        """Base, joints and tip at a reached platform pose (4, 4), (K, 3) [m], base frame."""
-        return self.robot.skeleton(self.solve(pose[None]).q)[0]
 
     def _position_and_rotation(self, poses: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
         T = self.targets(poses)
@@ -95,6 +141,12 @@ def _solver(chain: Kinematics, whole_pose: bool, device: str, threads: int | Non
     return InverseSolver(
         chain, kind=kind, position_m=tolerance_m(chain), angle_rad=ANGLE_RAD, device=device, threads=threads
     )
+
+
+@lru_cache(maxsize=64)
+def _posture_solver(chain: Kinematics, whole_pose: bool, device: str, threads: int | None) -> PostureSolver:
+    kind = "pose" if whole_pose else "position"
+    return PostureSolver(chain, kind=kind, device=device, threads=threads)
 
 
 def numeric_leg(number: int, leg: SerialLeg, robot: Robot | None = None) -> NumericLeg:

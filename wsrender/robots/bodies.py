@@ -18,7 +18,8 @@ class Bodies:
     ``chain`` has the coordinates of the robot's own. Where leaders or followers on other branches move bodies, it has
     their joints too, each undone after what it carries: see `Chain.dynamic`. ``pairs`` (P, 2) int are places in
     ``shapes`` of two that may collide, within the robot: shapes of the world of the model's file are its surroundings,
-    in no pair but those of ``around`` (A, 2). Off the chain, everything is at its reference.
+    in no pair but those of ``around`` (A, 2). Off the chain, everything is at its reference. ``tip``: the model's body
+    that carries the end effector.
     """
 
     model: mujoco.MjModel
@@ -29,6 +30,7 @@ class Bodies:
     addresses: np.ndarray  # (L,) int: where ``qpos`` has each joint of the chain, -1 for one that undoes another
     notices: tuple[Notice, ...] = ()
     around: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), int))
+    tip: int = 0
 
     __repr__ = short_repr
 

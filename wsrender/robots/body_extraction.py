@@ -93,7 +93,8 @@ class BodySource:
             shapes = self._shapes(model, geometry, geoms, numbers, purpose)
             shapes += self._attached(model, geometry, shapes, numbers)
         addresses = np.array([model.jnt_qposadr[joint] if joint >= 0 else -1 for joint in numbers])
-        return Bodies(model, chain, shapes, np.zeros((0, 2), int), self.reference, addresses, notices)
+        pairs = np.zeros((0, 2), int)
+        return Bodies(model, chain, shapes, pairs, self.reference, addresses, notices, tip=self.tip.body)
 
     def _moving_aside(self, model: mujoco.MjModel) -> list[Drive]:
         """Leaders and followers off the path, each of which moves with a coordinate of the chain."""

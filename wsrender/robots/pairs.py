@@ -44,13 +44,22 @@ def pairs_of_child(model: mujoco.MjModel, geoms: Sequence[int], body: int, count
 
     Those shapes have contype and conaffinity 1, MuJoCo's defaults; excludes do not name their body.
     """
-    met = [
-        number
-        for number, geom in enumerate(geoms)
-        if (model.geom_contype[geom] | model.geom_conaffinity[geom]) & 1
-        and not _rigid_or_adjacent(model, body, int(model.geom_bodyid[geom]))
-    ]
+    bits = (model.geom_contype | model.geom_conaffinity)[list(geoms)]
+    met = np.flatnonzero(apart_from_child(model, geoms, body) & (bits & 1 != 0)).tolist()
     return np.array([(i, j) for j in range(len(geoms), count) for i in met], int).reshape(-1, 2)
+
+
+def apart_from_child(model: mujoco.MjModel, geoms: Sequence[int], body: int, *, jointed: bool = False) -> np.ndarray:
+    """Whether MuJoCo tests ``geoms`` against another body's whose bits they meet, (G,) bool.
+
+    That body is fixed to ``body``, or where ``jointed`` its child across a joint.
+    """
+    own = [int(model.geom_bodyid[geom]) for geom in geoms]
+    if not jointed:
+        return np.array([not _rigid_or_adjacent(model, body, each) for each in own], bool)
+    parents_count = bool(model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
+    parent = int(model.body_weldid[body])
+    return np.array([parents_count or int(model.body_weldid[each]) != parent for each in own], bool)
 
 
 def collides(model: mujoco.MjModel) -> list[int]:

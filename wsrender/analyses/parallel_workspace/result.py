@@ -17,8 +17,9 @@ from wsrender.indices.units import task_matrix
 from wsrender.mechanisms.hybrid import Variant, from_middle, middle
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import DETERMINANTS
+from wsrender.mechanisms.keeping_apart import bodies_apart, stand
 from wsrender.mechanisms.mechanism import Mechanism
-from wsrender.mechanisms.membership import bodies_apart, fault_at, in_base_frame, in_world
+from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
 from wsrender.pipeline.sampling import subsample
 from wsrender.robot.constraints import samples_entry
 from wsrender.volume.distribution_map import DistributionMap
@@ -314,7 +315,8 @@ def _legs_at(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray:
         mechanism = next(each for each in mechanism.on_each_branch() if bodies_apart(each, pose[None])[0])
     legs = inverse_kinematics(mechanism, pose[None])
     lines = [np.stack(line) for line in zip(mechanism.base, legs.elbows[0], legs.joints[0], strict=True)]
-    lines += [leg.skeleton(pose) for leg in mechanism.numeric]
+    postures = stand(mechanism, pose[None]).q
+    lines += [leg.robot.skeleton(q)[0] for leg, q in zip(mechanism.numeric, postures, strict=True)]
     longest = max(len(line) for line in lines) + 1
     return np.stack([np.vstack([line, np.tile(pose[:3, 3], (longest - len(line), 1))]) for line in lines])
 

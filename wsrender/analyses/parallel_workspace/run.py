@@ -50,8 +50,9 @@ from wsrender.mechanisms.ball_region import region_of
 from wsrender.mechanisms.hybrid import Variant, added, count_union, middle, variants
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import CONDITION_NUMBERS, DETERMINANTS, check_square, pose_indices
+from wsrender.mechanisms.keeping_apart import bodies_apart
 from wsrender.mechanisms.mechanism import Mechanism
-from wsrender.mechanisms.membership import bodies_apart, count_lattice, fault_at, in_base_frame, orientations_labelled
+from wsrender.mechanisms.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.mechanisms.orientations import OrientationSet, orientation_set, random_orientations
 from wsrender.mechanisms.serial_search import SerialSearch, serial_search
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
