@@ -4,6 +4,7 @@ import asyncio
 import json
 import os
 import tempfile
+import time
 import uuid
 from collections.abc import Callable
 from functools import partial
@@ -25,6 +26,7 @@ from wsrender_server.problems import HttpProblem
 from wsrender_server.side_process import SideProcess
 
 MOST_KEPT = 64  # converted files
+MOST_KEPT_BYTES = 2 << 30
 TIMEOUT_S = 600.0
 
 
@@ -80,10 +82,18 @@ class ConvertedFiles:
 
     def _keep(self, made: Path, source_sha256: str, sha256: str, format: str) -> tuple[Path, str]:
         path = made.replace(self._folder / f"{source_sha256}.{sha256}.{__version__}.{format}")
-        files = sorted(self._folder.iterdir(), key=lambda file: file.stat().st_mtime)
-        for old in files[:-MOST_KEPT]:
-            old.unlink(missing_ok=True)
+        kept = 0
+        files = sorted(self._folder.iterdir(), key=lambda file: file.stat().st_mtime, reverse=True)
+        for number, old in enumerate(each for each in files if not _being_written(each)):
+            kept += old.stat().st_size
+            if old != path and (number >= MOST_KEPT or kept > MOST_KEPT_BYTES):
+                old.unlink(missing_ok=True)
         return path, sha256
+
+
+def _being_written(path: Path) -> bool:
+    """Whether it may be what the side process writes now; one that was killed leaves such a file."""
+    return path.name.startswith(".") and time.time() - path.stat().st_mtime < TIMEOUT_S
 
 
 def convert(source: Path, stored: Format, wanted: Format, target: Path) -> str:

@@ -3,11 +3,14 @@
 import hashlib
 import io
 import json
+import os
+import time
 import tracemalloc
 
 import numpy as np
 import pytest
 from sqlalchemy import update
+from wsrender_server import conversions
 from wsrender_server.jobs.tables import ArtifactFile, Computation
 
 import wsrender
@@ -160,6 +163,26 @@ def test_converted_files_hold_the_same(client, finished, result, tmp_path):
     assert (again.status_code, again.content) == (206, b"PK\x03\x04")
     problem_of(client.get(f"{finished}/artifacts/map.parquet", params={"format": "vti"}), 404, "format_not_available")
     problem_of(client.get(f"{finished}/artifacts/map.parquet", params={"format": "exe"}), 422, "invalid_request")
+
+
+def test_converted_files_are_few_and_take_no_more_than_their_bytes(client, finished, settings, monkeypatch):
+    """Those not asked for the longest go first; the newest stays, however large, and so does what is being written."""
+    folder = settings.data_dir / "converted"
+
+    def fetched(format):
+        assert client.get(f"{finished}/artifacts/map.parquet", params={"format": format}).status_code == 200
+        return {path.name.rpartition(".")[2] for path in folder.iterdir()}
+
+    assert fetched("npz") == {"npz"}
+    for name, age in (("npz", 3000), ("left", 2000), ("written", 0)):
+        path = next(folder.glob("*.npz")) if name == "npz" else folder / f".a.{name}"
+        path.touch()
+        os.utime(path, (time.time() - age,) * 2)
+    assert fetched("csv") == {"npz", "csv", "left", "written"}
+    monkeypatch.setattr(conversions, "MOST_KEPT", 3)
+    assert fetched("mat") == {"mat", "csv", "left", "written"}
+    monkeypatch.setattr(conversions, "MOST_KEPT_BYTES", 1)
+    assert fetched("npz") == {"npz", "written"}
 
 
 def test_vti_is_what_vtk_reads(client, finished, volume, tmp_path):
