@@ -2,6 +2,7 @@
 
 import errno
 import sqlite3
+import subprocess
 import threading
 import time
 from contextlib import closing
@@ -18,7 +19,7 @@ from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.documents import canonical
-from tests.server.jobs.waiting import ended, wait_until
+from tests.server.jobs.waiting import comparable, ended, local_document, partial_times, wait_until
 from wsrender.errors import InputError
 
 
@@ -115,6 +116,38 @@ def test_a_full_disk_refuses_models(settings, opened, monkeypatch):
 def test_a_disk_that_fills_up_in_mid_job_is_worth_a_retry(fault):
     error = outcome_of_exception(fault).error
     assert error["code"] == "disk_full" and error["retryable"]
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A folder on a disk of its own, of 64 MiB."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64m,mode=0700", "tmpfs", folder]
+    if subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("only root may mount a disk that can be filled")
+    yield folder
+    subprocess.run(["umount", "-l", folder], check=True)
+
+
+def test_a_job_whose_disk_fills_up_says_so_and_a_retry_goes_on(small_disk, tmp_path):
+    """Other jobs take the disk once this one has its first parts: a retry, when there is room, needs no others."""
+    sampling = {"method": "sobol", "count": 2**19}
+    document = canonical(sampling=sampling, voxel_size_m=0.02, keep_map=True, refined_volume=None, device="cpu")
+    settings = Settings(data_dir=small_disk / "data", min_free_disk_bytes=0, shard_samples=2**16)
+    others = small_disk / "others"
+    with JobService(settings) as service:
+        wait_until(lambda: service.worker_ready, what="a worker")
+        others.write_bytes(bytes(service.store.files.free_bytes() - 12 * 2**20))
+        job = service.store.submit("ann", document).job.id
+        record = ended(service.store, job)
+        assert record.state == "failed" and record.error["code"] == "disk_full" and record.error["retryable"]
+        assert partial_times(settings.data_dir)
+        others.unlink()
+        service.store.retry("ann", job)
+        assert ended(service.store, job).state == "succeeded"
+        result = comparable(service.store.result_document("ann", job))
+    assert result == local_document(document, tmp_path / "local")
 
 
 def test_an_unexpected_fault_says_nothing_about_the_server():
