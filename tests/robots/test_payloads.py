@@ -57,6 +57,7 @@ LISTED = {
     "xarm7": (3.5, 0.7),
     "yaskawa_gp7": (7, 0.927),
     "yaskawa_hc10dtp": (10, 1.2),  # as the HC10DT
+    "yaskawa_hc20": (20, 1.7),  # as the HC20XP
 }
 STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no such arm, or not this number
     "abb_irb1200_5_90",  # both are in its name
@@ -67,6 +68,7 @@ STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no s
     "talos_left_arm",  # 6 kg by an arm stretched out: Stasse et al., Humanoids 2017
     "ur10e",  # 12.5 kg: UR's user manual
     "ur30",  # 30 kg are in its name
+    "yaskawa_gp4",  # 4 kg are in its name; the reach follows from its lengths
 }
 
 
