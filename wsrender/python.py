@@ -201,10 +201,10 @@ def reachability(
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
-    characteristic_length_m: float | None = None,
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    characteristic_length_m: float | None = None,
     targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
     criteria: Sequence[Criterion | Mapping[str, Any]] = (),
     progress: Progress | bool | None = None,
@@ -230,11 +230,11 @@ def reachability(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
-        the reach.
     ``seed``: Seed of the starts.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
     ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
         one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
     ``criteria``: What the targets must fulfil for the result to pass.
@@ -334,24 +334,25 @@ def capability(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    voxel_size_m: float | None = None,
-    directions: int = 100,
-    approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z",
-    rolls: int | None = None,
-    dexterous_threshold: float = 1.0,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 0.001,
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    voxel_size_m: float | None = None,
+    directions: int = 100,
+    approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z",
+    rolls: int | None = None,
+    dexterous_threshold: float = 1.0,
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
 ) -> Result:
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
-    Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
-    Under constraints a direction is reached where they admit a configuration, and blocked where they reject all.
+    Targets are the centres, with the directions. Where the arm's positions fill no volume, as in a plane, the reachable
+    point nearest to the centre stands for it. Under constraints a direction is reached where they admit a
+    configuration, and blocked where they reject all.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
@@ -360,17 +361,17 @@ def capability(
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
+    ``angle_tolerance_rad``: Largest angle to a direction that counts as reached [rad].
+    ``seed``: Seed of the starts.
+    ``precision``: Floating-point type of the kernels.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``voxel_size_m``: Edge of a voxel [m]; None: a twentieth of the cube root of the workspace's convex-hull volume.
     ``directions``: Number of approach directions, spread evenly over the sphere.
     ``approach_axis``: Axis of the tip frame that points along the direction; the turn about it is free.
     ``rolls``: In how many turns about every direction, spread evenly, postures are counted, of arms with a closed form;
         None: they are not.
     ``dexterous_threshold``: Least reachability index of the dexterous workspace [1].
-    ``position_tolerance_m``: Largest distance to a voxel's centre that counts as reached [m].
-    ``angle_tolerance_rad``: Largest angle to a direction that counts as reached [rad].
-    ``seed``: Seed of the samples and starts.
-    ``precision``: Floating-point type of the kernels.
-    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
@@ -517,10 +518,10 @@ def base_placement(
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
-    characteristic_length_m: float | None = None,
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    characteristic_length_m: float | None = None,
     targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
     robots: Sequence[RobotLike] | None = None,
     weights: Sequence[float] | np.ndarray | None = None,
@@ -558,11 +559,11 @@ def base_placement(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
-        the reach.
     ``seed``: Seed of the starts.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
     ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
         one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
     ``robots``: The robots, placed by `load_robot(…, placement=…)`, each as one robot elsewhere, or its part of a job
@@ -604,15 +605,15 @@ def inverse_reachability(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
-    object_frame: Transform | Mapping[str, Any] | None = None,
-    mounting: Literal["floor", "wall", "ceiling"] = "floor",
-    use_symmetry: bool = True,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
-    characteristic_length_m: float | None = None,
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    characteristic_length_m: float | None = None,
+    object_frame: Transform | Mapping[str, Any] | None = None,
+    mounting: Literal["floor", "wall", "ceiling"] = "floor",
+    use_symmetry: bool = True,
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
@@ -632,17 +633,17 @@ def inverse_reachability(
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
+    ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
+    ``seed``: Seed of the starts.
+    ``precision``: Floating-point type of the kernels.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
     ``object_frame``: Frame in the world in which the target is given, such as that of a part; None: the world itself.
     ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
         z on the floor, its x on a wall, its -z under a ceiling.
     ``use_symmetry``: Whether one yaw alone is decided where others change nothing but the first joint's value.
-    ``position_tolerance_m``: Largest distance to the target that counts as reached [m].
-    ``angle_tolerance_rad``: Largest angle to the target's orientation that counts as reached [rad].
-    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
-        the reach.
-    ``seed``: Seed of the starts.
-    ``precision``: Floating-point type of the kernels.
-    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
@@ -662,10 +663,10 @@ def two_arm_placement(
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
-    characteristic_length_m: float | None = None,
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    characteristic_length_m: float | None = None,
     targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
     first: ArmOnBase | Mapping[str, Any],
     second: ArmOnBase | Mapping[str, Any],
@@ -692,11 +693,11 @@ def two_arm_placement(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
-        the reach.
     ``seed``: Seed of the starts.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
     ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
         one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
     ``first``: One arm, and where it may stand.

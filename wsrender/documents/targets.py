@@ -27,7 +27,29 @@ Quaternions = Annotated[
 ]
 
 
-class Targets(Document):
+class Deciding(Document):
+    """How inverse kinematics decides: what counts as reached, and what its searches depend on."""
+
+    position_tolerance_m: PositiveNumber = 1e-5
+    """Largest distance to a target that counts as reached [m]."""
+    angle_tolerance_rad: AngleTolerance = 1e-5
+    """Largest angle to a target's orientation that counts as reached [rad]."""
+    seed: Seed = 0
+    """Seed of the starts."""
+    precision: Precision = "float64"
+    """Floating-point type of the kernels."""
+    device: Device = "auto"
+    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+
+class WeighedDeciding(Deciding):
+    """The same, of searches that weigh angles against distances."""
+
+    characteristic_length_m: PositiveNumber | None = None
+    """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
+
+
+class Targets(WeighedDeciding):
     """The fields of every job that decides which of given targets a robot reaches."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")
@@ -37,18 +59,6 @@ class Targets(Document):
     quats_wxyz: Quaternions | None = None
     """Orientations of the targets, a quaternion w, x, y, z for each point, or one for all; null: any orientation
     will do."""
-    position_tolerance_m: PositiveNumber = 1e-5
-    """Largest distance to a target that counts as reached [m]."""
-    angle_tolerance_rad: AngleTolerance = 1e-5
-    """Largest angle to a target's orientation that counts as reached [rad]."""
-    characteristic_length_m: PositiveNumber | None = None
-    """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
-    seed: Seed = 0
-    """Seed of the starts."""
-    precision: Precision = "float64"
-    """Floating-point type of the kernels."""
-    device: Device = "auto"
-    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

@@ -7,8 +7,8 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument, example
-from wsrender.documents.options import Device, Precision
-from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed, VoxelSize, integer, is_none, real
+from wsrender.documents.quantities import AngleTolerance, VoxelSize, integer, is_none, real
+from wsrender.documents.targets import Deciding
 
 LARGEST_SET = 10_000
 
@@ -17,11 +17,12 @@ def _whole(value: Any) -> int | None:
     return None if value is None else integer(value)
 
 
-class CapabilityJob(Constrained, Arm, JobDocument):
+class CapabilityJob(Deciding, Constrained, Arm, JobDocument):
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
-    Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
-    Under constraints a direction is reached where they admit a configuration, and blocked where they reject all.
+    Targets are the centres, with the directions. Where the arm's positions fill no volume, as in a plane, the
+    reachable point nearest to the centre stands for it. Under constraints a direction is reached where they admit a
+    configuration, and blocked where they reject all.
     """
 
     model_config = example(
@@ -44,13 +45,5 @@ class CapabilityJob(Constrained, Arm, JobDocument):
     they are not."""
     dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0
     """Least reachability index of the dexterous workspace [1]."""
-    position_tolerance_m: PositiveNumber = 1e-5
-    """Largest distance to a voxel's centre that counts as reached [m]."""
     angle_tolerance_rad: AngleTolerance = 1e-3
     """Largest angle to a direction that counts as reached [rad]."""
-    seed: Seed = 0
-    """Seed of the samples and starts."""
-    precision: Precision = "float64"
-    """Floating-point type of the kernels."""
-    device: Device = "auto"
-    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

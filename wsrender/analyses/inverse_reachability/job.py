@@ -9,10 +9,9 @@ from wsrender.analyses.registry import job_classes
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument, example
-from wsrender.documents.options import Device, Precision
 from wsrender.documents.placements import Mounting, PlacementSpace
-from wsrender.documents.quantities import AngleTolerance, PositiveNumber, Seed
 from wsrender.documents.target_lists import Target
+from wsrender.documents.targets import WeighedDeciding
 from wsrender.documents.transform import Transform
 from wsrender.errors import DocumentError
 
@@ -20,11 +19,11 @@ POSITIONS = ("x_m", "y_m", "z_m")
 _ON_LATTICE = 1e-6  # of a cell
 _SHARED = (
     *("robot", "base", "tip", "constraints", "environment", "gravity_m_s2", "over", "mounting", "use_symmetry"),
-    *("position_tolerance_m", "angle_tolerance_rad", "characteristic_length_m", "seed", "precision", "device"),
+    *WeighedDeciding.model_fields,
 )
 
 
-class InverseReachabilityJob(Constrained, Arm, JobDocument):
+class InverseReachabilityJob(WeighedDeciding, Constrained, Arm, JobDocument):
     """From which base poses of a space a robot reaches one target: a map over x and y, or a volume over x, y and z.
 
     What ``base_placement`` decides of one target, kept base by base. Target, constraints and environment stand in the
@@ -52,18 +51,6 @@ class InverseReachabilityJob(Constrained, Arm, JobDocument):
     floor, its x on a wall, its -z under a ceiling."""
     use_symmetry: StrictBool = True
     """Whether one yaw alone is decided where others change nothing but the first joint's value."""
-    position_tolerance_m: PositiveNumber = 1e-5
-    """Largest distance to the target that counts as reached [m]."""
-    angle_tolerance_rad: AngleTolerance = 1e-5
-    """Largest angle to the target's orientation that counts as reached [rad]."""
-    characteristic_length_m: PositiveNumber | None = None
-    """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
-    seed: Seed = 0
-    """Seed of the starts."""
-    precision: Precision = "float64"
-    """Floating-point type of the kernels."""
-    device: Device = "auto"
-    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
