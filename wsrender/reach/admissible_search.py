@@ -174,9 +174,13 @@ class AdmissibleSearch:
         q, slack, none, alone = closed.postures(position[at], _some(orientation, at))
         targets = np.repeat(at, slack.shape[1])
         tries = self.solver.tries(q.reshape(len(targets), -1), position[targets], _some(orientation, targets))
+        # From what is no posture of a pose that others are known of, tries end beside one of these, off the pose: there
+        # constraints may admit what they reject of the posture.
+        known = (none | alone).all(axis=1)
+        tries.reached[(none & known[:, None]).ravel()] = False
         found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
-        all_rejected = (none | (solved & alone)).all(axis=1) & solved.any(axis=1) & (found.label[at] == UNDECIDED)
+        all_rejected = known & (solved == alone).all(axis=1) & solved.any(axis=1) & (found.label[at] == UNDECIDED)
         if turns_matter(self.solver.whole, self.admission.names):
             return
         found.label[at[all_rejected]] = BLOCKED
