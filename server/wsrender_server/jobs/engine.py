@@ -84,6 +84,7 @@ class Engine:
                         timeout=CONNECT_S,
                         set_as_default=False,
                     )
+            _keep_no_spans(client)
             client.subscribe_topic(workers_side.TOPIC, lambda event: self._on_message(event[1]))
         except LOST as error:
             raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
@@ -221,6 +222,22 @@ class Engine:
                 **{k: v for k, v in workers_side.worker_options(self._settings).items() if k != "nthreads"},
             )
         return self._cluster
+
+
+def _keep_no_spans(client: Client) -> None:
+    """Let the scheduler measure no spans: it would keep those of every job for ever, and so would its workers."""
+
+    class NoSpans:  # here, so that a scheduler without this package can have it
+        def __bool__(self) -> bool:
+            return False
+
+        def heartbeat(self, worker: Any, measured: Any) -> None:
+            """Forget what a worker has measured."""
+
+    def replace(dask_scheduler: Any) -> None:
+        dask_scheduler.extensions["spans"] = NoSpans()
+
+    client.run_on_scheduler(replace)
 
 
 def _leave(client: Client | None) -> None:

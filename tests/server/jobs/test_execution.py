@@ -1,5 +1,6 @@
 """Jobs on the embedded cluster: results, failures, cancel and timeout, with real processes."""
 
+import gc
 import hashlib
 import os
 import signal
@@ -7,6 +8,7 @@ import time
 
 import psutil
 import pytest
+from distributed.spans import Span
 from wsrender_server.jobs.service import JobService
 from wsrender_server.settings import Settings
 
@@ -367,3 +369,21 @@ def computes(pid):
         return process.status() != psutil.STATUS_ZOMBIE and process.cpu_times() != before
     except psutil.NoSuchProcess:
         return False
+
+
+def test_dask_keeps_nothing_of_jobs_that_have_ended(service, store):
+    """What it measures of them, in the scheduler and in its workers; by default it grows with every job, for ever."""
+    kept = []
+    for number in range(6):
+        job = store.submit("ann", indices_at(configurations=[[0.1 + 1e-3 * number, 0.2, 0.05, 0.3]])).job.id
+        assert ended(store, job).state == "succeeded"
+        wait_until(lambda: not service.dispatcher._attempts, what="the end of the attempt")
+        kept.append(kept_by_dask(service.dispatcher.engine._client))
+    assert kept[-1] == kept[1]
+
+
+def kept_by_dask(client):
+    """Spans of the scheduler, which is here, and what its worker has measured."""
+    (measured,) = client.run(lambda dask_worker: sorted(map(str, dask_worker.digests_total))).values()
+    gc.collect()
+    return sum(isinstance(each, Span) for each in gc.get_objects()), measured
