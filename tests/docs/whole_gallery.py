@@ -17,7 +17,7 @@ MOST_S = 3600
 
 def gallery() -> dict[str, Any]:
     """Seconds, how pytest ended, and the end of what it said."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-o", f"faulthandler_timeout={MOST_S}", "tests/docs"]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-rs", "-o", f"faulthandler_timeout={MOST_S}", "tests/docs"]
     began = time.perf_counter()
     environment = os.environ | {"DOCS_CHOICE": "all"}
     done = subprocess.run(command, cwd=CLONE, env=environment, capture_output=True, text=True, timeout=MOST_S)

@@ -21,7 +21,7 @@ def few_samples(holes: float | None, unseen: float) -> Iterator[Notice]:
         found = f"for every 100 voxels that hold a sample about {100 * holes:.2g} are empty though wholly reachable"
         remedy += _SELDOM
     elif holes is None and unseen > MOST_UNSEEN:
-        found = f"for every 100 voxels that hold a sample more samples would find at least {100 * unseen:.2g}"
+        found = f"for every 100 voxels that hold a sample more samples would find at least {100 * unseen:.0f}"
     else:
         return
     yield Notice("few_samples", f"too few samples for voxels of this size: {found}", remedy, "voxel_size_m")

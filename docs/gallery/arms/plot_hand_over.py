@@ -15,8 +15,7 @@ result = ws.two_arm_placement(
     second={"robot": "ur5e", "over": {"x_m": [0.6, 2.2, 0.2], "y_m": [-0.8, 0.8, 0.2]}},
     device="cpu",
 )
-print(result.document["targets"])
-print(result.document["best"]["second"])
+print(result.summary())
 
 # Picture: The targets, coloured by the arm that serves them, with the bases of both.
 result.plot.shares()

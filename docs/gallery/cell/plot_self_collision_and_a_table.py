@@ -26,14 +26,14 @@ result = ws.analyze(
     device="cpu",
 )
 print(result.summary())
-print(result.document["samples"])
 
 # %%
 # *Free* is what some admitted posture reaches, *blocked* where postures were found and all were rejected, *undecided*
 # what neither could be shown of.
 
 for name in ("free", "blocked", "undecided"):
-    print(name, result.document["volume_m3"][name])
+    found = result.document["volume_m3"][name]
+    print(f"{name:10s}{found['value']:.2f} m³, 95 %: {found['ci95'][0]:.2f} … {found['ci95'][1]:.2f}")
 
 # Picture: Planes of free voxels in grey and blocked ones in orange; the blocked ones are the table and all below
 # the floor.

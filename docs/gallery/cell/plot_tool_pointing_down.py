@@ -25,8 +25,9 @@ print(result.summary())
 #
 # Few random postures point downwards; the headline does not suffer from it, since inverse kinematics looks for them.
 
-print(result.document["samples"])
-print(result.document["headline"])
+samples, labels = result.document["samples"], result.document["voxel_labels"]
+print(f"{samples['admitted']:,} of {samples['drawn']:,} samples point downwards")
+print(", ".join(f"{name} {number:,}" for name, number in labels["labels"].items()))
 
 # Picture: Planes of voxels by whether their centres are reached so: all but a rim and the surroundings of the axis.
 result.plot.labels(at=(0, 0, 0.2))

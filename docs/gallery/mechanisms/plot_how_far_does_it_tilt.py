@@ -2,7 +2,7 @@
 How far does a Stewart platform tilt?
 =====================================
 
-At one position, over all tilts and turns: the orientation workspace.
+At one position, over all directions of tilt up to 60°: the orientation workspace.
 """
 
 import wsrender as ws
@@ -13,5 +13,5 @@ result = ws.parallel_workspace(
 )
 print(result.summary())
 
-# Picture: Discs of tilt by direction, one for each turn about the axis: reached tilts are filled.
+# Picture: A disc of directions of tilt, 60° at its rim: filled to about 35° in all directions.
 result.plot.orientations()

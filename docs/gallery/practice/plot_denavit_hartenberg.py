@@ -9,8 +9,9 @@ import wsrender as ws
 
 rows = [{"a": 0.4, "limits_deg": [-150, 150]}, {"a": 0.3, "limits_deg": [-160, 160]}]
 planar = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
-result = ws.analyze(planar, ws.Grid(400), task=["x", "y"], indices=["manipulability"], voxel_size_m=0.01, device="cpu")
-print(result.document["headline"])
+common = {"indices": ["manipulability"], "voxel_size_m": 0.01, "device": "cpu"}
+result = ws.analyze(planar, ws.Grid(400), task=["x", "y"], **common)
+print(result.summary())
 
 # Picture: The area of the planar arm: a ring with a notch, coloured by manipulability.
 result.plot.slice(z=0.0)

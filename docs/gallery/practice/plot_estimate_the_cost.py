@@ -29,4 +29,5 @@ for name, value in ws.run.plan(job).estimate.items():
 
 with LocalServer(Path(tempfile.mkdtemp())) as server, ws.Client(server.url) as client:
     estimate = client.estimate(job)
-print({name: value for name, value in estimate.items() if not isinstance(value, dict | list)})
+megabytes = estimate["memory_bytes"] / 1e6
+print(f"{estimate['samples']:,.0f} samples, {megabytes:.1f} MB of memory, {estimate['seconds']:.1f} s")

@@ -25,7 +25,7 @@ class Screw:
 
 
 result = ws.analyze(Screw(), ws.Grid(40), ["manipulability"], refined_volume=None, device="cpu")
-print(result.document["headline"])
+print(result.summary())
 
 # Picture: The sampled positions: a helical ramp of some thickness, brighter far from its axis.
 result.plot.scatter()

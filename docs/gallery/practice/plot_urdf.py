@@ -23,9 +23,7 @@ print(robot.joint_names, robot.lower_limits, robot.upper_limits)
 # %%
 
 result = ws.analyze(robot, ws.Grid(60), ["manipulability"], device="cpu")
-print(result.document["headline"])
-for warning in result.document["warnings"]:
-    print(warning["code"], "·", warning["message"])
+print(result.summary())
 
 # Picture: The arm as sticks in the sampled positions, coloured by manipulability.
 result.plot.robot()
