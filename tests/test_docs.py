@@ -4,11 +4,13 @@ import re
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 import wsrender as ws
 from tests.snippets import CLONE, blocks, run
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import job_classes
+from wsrender.cli import command_line
 
 PAGES = [page for page in sorted(CLONE.glob("docs/*/*.md")) if page.stem != "ten_minutes"]  # which test_ten_minutes has
 
@@ -49,3 +51,30 @@ def test_the_files_of_a_result_are_listed(tmp_path, monkeypatch):
     listed = set(re.findall(r"`([\w/.]+)`", RESULTS.split("## Files")[1].split("\n\n")[1]))
     written = {path.name for path in Path("out").iterdir()}
     assert {name.strip("/") for name in listed} >= written
+
+
+TYPED = [*PAGES, *(CLONE / name for name in ("README.md", "server/README.md", "deploy/README.md", "clients/README.md"))]
+
+
+@pytest.mark.parametrize("page", TYPED, ids=lambda page: "/".join(page.parts[-2:]))
+def test_commands_that_are_shown_are_known(page):
+    """Their names, and their options, in blocks and in text."""
+    text = page.read_text("utf-8")
+    fenced = re.findall(r"^```([^\n]*)\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    shown = "".join(content for language, content in fenced if language in ("", "sh"))
+    typed = re.findall(r"^ *(wsrender [a-z].*)$", shown, flags=re.MULTILINE) + re.findall(
+        r"`(wsrender [a-z][^`]*)`", text
+    )
+    faults = {line: _unknown(re.split(r"[#|;&]", line)[0].split()[1:]) for line in typed}
+    assert {line: fault for line, fault in faults.items() if fault} == {}
+
+
+def _unknown(words):
+    """Of a command's words those that are no command where one must stand, or no option of it."""
+    command = get_command(command_line(None))
+    while words and hasattr(command, "commands"):
+        if words[0] not in command.commands:
+            return words[:1]
+        command, words = command.commands[words[0]], words[1:]
+    known = {name for each in command.params for name in (*each.opts, *each.secondary_opts)} | {"--help"}
+    return [word for word in words if word.startswith("-") and word.partition("=")[0].rstrip(",.") not in known]
