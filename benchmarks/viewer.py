@@ -30,6 +30,7 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.viewer.served import serving
+from tests.viewer.watched import HELD
 from tests.viewer.written import Written, manifest
 from wsrender.results.view.container import message
 from wsrender.results.view.interactive import Interactive
@@ -85,7 +86,7 @@ JOB = {
     "refined_volume": None,
     "device": "cpu",
 }
-# Before the page's own script: times [ms] of what it says in attributes, how many objects each canvas's graphics hold.
+# Before the page's own script: times [ms] of what it says in attributes.
 WATCH = """
 window.seen = [];
 const attach = Element.prototype.attachShadow;
@@ -101,12 +102,6 @@ Element.prototype.attachShadow = function (options) {
   } }).observe(root, {subtree: true, attributes: true, attributeFilter: ["data-drawn", "data-live", "data-volume"]});
   return root;
 };
-for (const what of ["Texture", "Buffer", "Framebuffer", "Renderbuffer", "Program"]) {
-  const of = WebGL2RenderingContext.prototype, make = of["create" + what], free = of["delete" + what];
-  const count = (gl, by) => { gl.held = {...gl.held, [what]: (gl.held?.[what] ?? 0) + by}; };
-  of["create" + what] = function (...given) { count(this, 1); return make.apply(this, given); };
-  of["delete" + what] = function (given) { if (given) count(this, -1); return free.call(this, given); };
-}
 """
 LOADED = """() => {
   const blobs = performance.getEntriesByType("resource").filter(each => each.name.includes("/blobs/volume"));
@@ -217,7 +212,7 @@ def viewed(size: str) -> Iterator[tuple[str, Any]]:
         def page() -> Any:
             made = browser.new_context(viewport={"width": width, "height": height}).new_page()
             made.set_default_timeout(120_000)
-            made.add_init_script(WATCH)
+            made.add_init_script(WATCH + HELD)
             return made
 
         yield f"{server.url}/#/job/{job.id}", page

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wsrender.results.view import view_of
+from wsrender.results.view import parts, view_of
 
 
 @pytest.mark.parametrize("name", ["master_slave_mapping", "master_slave_mapping.voxels"])
@@ -72,6 +72,28 @@ def test_the_best_design_is_the_robot_that_is_shown(local):
     assert np.reshape(robot["chain"]["T_tip"], (4, 4))[0, 3] == result.document["best"]["parameters"]["forearm"]
     (plot,) = manifest["plots"]
     assert plot["x"]["values"] == sorted(result.tables["sweep"]["forearm"].tolist())
+
+
+def test_how_a_sampling_has_settled_is_a_curve(local):
+    """Of the robot of its samples; of other samplings there is none."""
+    result = local("workspace.converged")
+    (plot,) = (each for each in view_of(result).manifest["plots"] if each["kind"] == "curve")
+    grids = result.document["convergence"]
+    assert plot["x"]["values"] == [each["samples"] for each in grids] == [64, 216]
+    assert plot["y"][0]["values"] == [each["value"] for each in grids]
+    assert (plot["y"][0]["label"], plot["y"][0]["unit"]) == ("Joint mean of manipulability", "")
+    assert (plot["sets"], plot["robot"]) == ("samples", 0)
+    named = {**result.document, "name": "gantry"}
+    both = parts.convergence({"job": {"robots": [named["job"]] * 2}, "robots": [{**named, "convergence": None}, named]})
+    assert [(each["name"], each["robot"]) for each in both] == [("convergence of gantry", 1)]
+    unknown = parts.convergence({**result.document, "job": None})
+    assert unknown[0]["y"][0]["label"] == "Global value"
+    assert parts.convergence(local("workspace").document) == []
+
+
+def test_the_curve_over_scales_sets_that_of_the_mapping(local):
+    plots = view_of(local("master_slave_mapping")).manifest["plots"]
+    assert [each.get("sets") for each in plots if each["kind"] == "curve"] == ["scale"]
 
 
 def test_the_pareto_set_of_placements_is_a_curve(local):

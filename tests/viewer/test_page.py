@@ -4,13 +4,27 @@ import json
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 
 import wsrender as ws
+from tests.golden.files import analyses, job_of
 from tests.viewer.axe import serious_faults
-from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, until
-from tests.viewer.written import decoded
+from tests.viewer.watched import (
+    JOB,
+    Watched,
+    clicked,
+    differing,
+    link_holds_the_view,
+    opened,
+    pixels,
+    relink,
+    settle,
+    spots,
+    until,
+)
+from tests.viewer.written import decoded, looking
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +67,26 @@ def test_a_job_is_submitted_through_the_form_and_watched(watched: Watched) -> No
     row.get_by_role("button", name="View").click()
     page.get_by_role("button", name="Show all").wait_for()
     assert watched.refusals <= 4
+
+
+def test_every_analysis_has_a_form_that_keeps_its_document(watched: Watched) -> None:
+    """Written as JSON, shown as fields, found good by the server with what it takes, and the same JSON again."""
+    page = watched.page
+    page.goto(watched.url + "/#/new")
+    edit = page.get_by_role("button", name="Edit as JSON")
+    for analysis in analyses():
+        document = job_of(analysis)
+        edit.click()
+        page.get_by_label("Job document").fill(json.dumps(document))
+        edit.click()
+        until(lambda analysis=analysis: page.get_by_label("Analysis", exact=True).input_value() == analysis)
+        for name in document.keys() - {"analysis"}:
+            assert page.locator(f'[data-pointer^="#/{name}"]').count(), (analysis, name)
+        page.get_by_text("Samples", exact=True).wait_for()
+        assert page.locator(".problems li, .problem:not(:empty)").count() == 0, analysis
+        edit.click()
+        assert json.loads(page.get_by_label("Job document").input_value()) == document, analysis
+        edit.click()
 
 
 def test_what_stands_around_is_edited_before_ones_eyes(watched: Watched, client: ws.Client) -> None:
@@ -185,7 +219,7 @@ def test_the_volume_that_follows_a_limit_is_a_jobs(
 def test_the_volume_follows_tool_and_base_and_is_that_of_the_job_they_make(
     watched: Watched, client: ws.Client, finished: str
 ) -> None:
-    """What the page writes as a job, computed, has the voxels that were shown; it names tool and placement."""
+    """What the page submits as a job has the voxels that were shown; it names tool and placement."""
     opened(watched, f"/job/{finished}")
     page = watched.page
     page.get_by_text("Change limits").click()
@@ -208,7 +242,12 @@ def test_the_volume_follows_tool_and_base_and_is_that_of_the_job_they_make(
     T = arm.forward_kinematics([0.1] * 6)[0] @ np.diag([1.0, 1, 1, 1])
     expected = T[:3, 3] + 0.2 * T[:3, 2] + [0.35, 0, 0]
     assert np.abs(as_written.forward_kinematics([0.1] * 6)[0, :3, 3] - expected).max() < 1e-9
-    volume = client.submit(written | {"sampling": NARROW["sampling"]}).result().volume
+    as_many = written | {"sampling": NARROW["sampling"]}  # as follow a slider
+    page.get_by_label("Job document").fill(json.dumps(as_many))
+    page.get_by_text("Samples", exact=True).wait_for()
+    with page.expect_response(lambda answer: answer.url.endswith("/v1/jobs") and answer.status == 202) as answer:
+        page.get_by_role("button", name="Submit", exact=True).click()
+    volume = client.job(answer.value.json()["id"]).result().volume
     assert volume is not None and seen == len(volume.voxels.cells) * float(volume.voxel_size_m) ** 3
 
 
@@ -258,6 +297,61 @@ def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client
     assert job.id not in [each.id for each in client.jobs()]
 
 
+ENDLESS = JOB | {"sampling": {"method": "sobol", "count": 10**10}}
+# Records in `seen` the states that a row is shown in.
+WATCH = """(id) => {
+  const root = document.querySelector("#wsrender").shadowRoot;
+  window.seen = [];
+  new MutationObserver(() => {
+    const state = root.querySelector(`tr[data-job='${id}']`)?.dataset.state;
+    if (state && state !== seen.at(-1)) seen.push(state);
+  }).observe(root, {subtree: true, childList: true, characterData: true, attributes: true});
+}"""
+
+
+def test_a_job_that_is_retried_is_not_shown_in_its_past_states(watched: Watched, client: ws.Client) -> None:
+    """Its events are followed from where the list is, not from the job's first one."""
+    job, page, asked = client.submit(ENDLESS), watched.page, []
+    page.on("request", lambda each: asked.append((each.url, each.headers.get("last-event-id"))))
+    page.goto(watched.url)
+    row = page.locator(f"tr[data-job='{job.id}']")
+    row.locator("progress").wait_for()
+    job.cancel()
+    canceled = page.locator(f"tr[data-job='{job.id}'][data-state=canceled]")
+    canceled.wait_for()
+    known = client.job(job.id).record["last_event"]
+    page.evaluate(WATCH, job.id)
+    asked.clear()
+    page.get_by_role("button", name=f"Retry job {job.id[:8]}").click()
+    row.locator("progress").wait_for()
+    page.wait_for_timeout(500)
+    seen = page.evaluate("seen")
+    assert seen[-1] == "running" and set(seen[:-1]) <= {"queued"}, seen
+    after = [int(number) for url, number in asked if url.endswith(f"{job.id}/events")]
+    assert after and min(after) > known
+    page.get_by_role("button", name=f"Cancel job {job.id[:8]}").click()
+    canceled.wait_for()
+
+
+def test_an_answer_that_an_event_has_overtaken_takes_nothing_back(watched: Watched, client: ws.Client) -> None:
+    """The list is asked for, the job ends, and only then the list comes, as it was."""
+    job, page, held = client.submit(ENDLESS), watched.page, []
+    page.goto(watched.url)
+    page.locator(f"tr[data-job='{job.id}'] progress").wait_for()
+    page.route("**/v1/jobs?*", lambda route: route.continue_() if held else held.append((route, route.fetch())))
+    while not held:
+        page.wait_for_timeout(50)
+    job.cancel()
+    page.locator(f"tr[data-job='{job.id}'][data-state=canceled]").wait_for()
+    page.evaluate(WATCH, job.id)
+    ((route, answer),) = held
+    assert next(each for each in answer.json()["items"] if each["id"] == job.id)["state"] == "running"
+    route.fulfill(response=answer)
+    page.wait_for_timeout(500)
+    assert set(page.evaluate("seen")) <= {"canceled"}
+    page.unroute_all()
+
+
 def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
     opened(watched, f"/job/{finished}")
     page = watched.page
@@ -281,22 +375,6 @@ def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
     assert page.get_by_label("Colour map").input_value() == "magma"
     assert page.get_by_label("Joint joint2 [°], as a number").input_value() == "-60"
     assert differing(seen, pixels(watched)) < 100
-
-
-def link_holds_the_view(page) -> None:
-    """Wait until the page has written its view into its address, by its own clock, however busy it is."""
-    page.evaluate("new Promise((done) => setTimeout(done, 800))")
-
-
-def relink(watched: Watched) -> None:
-    """Leave the page, and follow its own address, once that holds the view."""
-    link_holds_the_view(watched.page)
-    link = watched.page.url
-    assert "view=" in link
-    watched.page.goto("about:blank")
-    watched.page.goto(link)
-    watched.page.get_by_role("button", name="Show all").first.wait_for()
-    settle(watched)
 
 
 def test_a_link_of_an_older_page_begins_with_todays_settings_where_it_says_nothing(
@@ -343,6 +421,43 @@ def test_a_link_to_two_results_restores_both_and_their_difference(
     assert differing(seen, pixels(watched)) < 100
     second.get_by_role("button", name="Look").click()
     assert second.get_by_label("Style").input_value() == "cells"
+
+
+def test_the_difference_of_two_results_is_that_of_their_numbers(
+    watched: Watched, client: ws.Client, finished: str, narrower: str
+) -> None:
+    """Colours of at least 30 voxels in the plane of a cut, against the values of both files."""
+    first, second = (client.job(each).result().volume for each in (finished, narrower))
+    assert first is not None and second is not None
+    size, half = first.voxel_size_m, 1.2
+    known = {}
+    for volume in (first, second):
+        cells = np.stack(np.unravel_index(volume.voxels.cells, volume.shape), axis=1) + volume.first_voxel
+        values = volume.voxels.statistics["maximum"]["manipulability"].tolist()
+        known[id(volume)] = dict(zip(map(tuple, cells.tolist()), values, strict=True))
+    a, b = known.values()
+    difference = {cell: a[cell] - b[cell] for cell in a if cell in b}
+    most = max(map(abs, difference.values()))
+    cut = {"style": "cells", "cut": [{"axis": "y", "from_m": 0.0, "to_m": None}]}
+    whole = {"low": None, "high": None, "scale": "linear", "clipped": False}
+    off = {"visible": False, "opacity": 1}
+    opened(watched, f"/compare/{finished}/{narrower}", camera=looking([0, 0, 0.2], half), volumes={"volume": cut},
+           range=whole, layers={"robot:0": off, "axes": off, "scale_bar": off})  # fmt: skip
+    watched.page.get_by_role("button", name="Difference, on the left").click()
+    watched.page.get_by_text("the first minus the second").wait_for()
+    picture, box = pixels(watched), watched.page.locator(".stage-host").first.bounding_box()
+    seen = 0
+    for (x, y, z), value in difference.items():
+        if y != 0:
+            continue
+        ((column, row),) = spots(watched, [[(x + 0.5) * size, 0, (z + 0.5) * size]], [0, 0, 0.2], half)
+        column, row = int(column - box["x"]), int(row - box["y"])
+        if not (0 <= column < box["width"] and 80 < row < box["height"]):  # below the colour bar
+            continue
+        expected = mpl.colormaps["coolwarm"](0.5 + value / (2 * most), bytes=True)[:3]
+        assert np.abs(picture[row, column] - np.array(expected, int)).max() <= 3, (x, y, z)
+        seen += 1
+    assert seen >= 30 and len({round(each, 4) for each in difference.values()}) > 10
 
 
 def test_two_results_turn_together(watched: Watched, finished: str, narrower: str) -> None:
@@ -420,10 +535,14 @@ def test_axe_finds_no_serious_fault(watched: Watched, finished: str, place: str)
     assert serious_faults(page) == []
 
 
-@pytest.mark.parametrize("watched", [{"viewport": {"width": 390, "height": 844}}], indirect=True)
-def test_on_a_telephone_all_is_within_reach(watched: Watched, finished: str, narrower: str) -> None:
+SCREENS = {"telephone": (390, 844), "tablet": (820, 1180), "tablet lying": (1024, 768), "desk": (1280, 720)}
+SIZES = [{"viewport": {"width": width, "height": height}} for width, height in SCREENS.values()]
+
+
+@pytest.mark.parametrize("watched", SIZES, indirect=True, ids=SCREENS)
+def test_on_every_screen_all_is_within_reach(watched: Watched, finished: str, narrower: str) -> None:
     """Every button of the bars stands within the screen, and the panels open there."""
-    page, wide = watched.page, 390
+    page, wide = watched.page, watched.page.viewport_size["width"]
     for place in ("/", "/new", f"/job/{finished}", f"/compare/{finished}/{narrower}"):
         page.goto(f"{watched.url}/#{place}")
         bar = page.get_by_role(
@@ -436,10 +555,12 @@ def test_on_a_telephone_all_is_within_reach(watched: Watched, finished: str, nar
             assert box["x"] >= 0 and box["x"] + box["width"] <= wide, (place, each.inner_text())
     opened(watched, f"/job/{finished}")
     for name, panel in (("Look", "What it looks like"), ("Explore", "Explore")):
-        page.get_by_role("button", name=name, exact=True).click()
+        button = page.get_by_role("button", name=name, exact=True)
+        if button.get_attribute("aria-expanded") == "false":
+            button.click()
         box = page.get_by_role("group", name=panel).bounding_box()
         assert box["x"] >= 0 and box["x"] + box["width"] <= wide
-        page.get_by_role("button", name=name, exact=True).click()
+        button.click()
 
 
 def test_a_job_that_failed_says_why_in_the_list(watched: Watched, client: ws.Client) -> None:

@@ -455,6 +455,17 @@ def test_turning_by_hand_and_by_keys(views):
     assert len(moves) >= 3
     radius = {round(float(np.linalg.norm(np.subtract(m["position"], m["target"]))), 6) for m in moves}
     assert len(radius) == 1
+    views.page.mouse.wheel(0, -400)
+    views.until(f"moves.length > {len(moves)}")
+    zoomed = views.page.evaluate("moves.at(-1)")
+    assert zoomed["target"] == moves[-1]["target"]
+    assert np.linalg.norm(np.subtract(zoomed["position"], zoomed["target"])) < 0.95 * min(radius)
+    views.page.mouse.down(button="right")
+    views.page.mouse.move(330, 260, steps=3)
+    views.page.mouse.up(button="right")
+    moves = views.page.evaluate("moves")
+    moved = [np.subtract(moves[-1][name], zoomed[name]) for name in ("position", "target")]
+    assert np.linalg.norm(moved[1]) > 0.01 and np.allclose(*moved)
     views.page.focus("canvas")
     views.page.keyboard.press("ArrowLeft")
     turned = views.page.evaluate("moves.at(-1)")
@@ -630,6 +641,50 @@ def test_all_is_shown_in_a_view_of_another_size_until_the_eye_is_moved(views):
     views.page.set_viewport_size({"width": WIDTH, "height": HEIGHT})
     views.rest()
     assert views.page.evaluate(away) == pytest.approx(narrow, rel=1e-6)
+
+
+# Keeps in `boxes` where the last picture's texts and panels stand: [text, or "" of a panel, left, top, right, bottom].
+BOXES = """() => {
+  const {clearRect, fillText, roundRect} = CanvasRenderingContext2D.prototype, own = CanvasRenderingContext2D.prototype;
+  window.boxes = [];
+  own.clearRect = function (...at) { boxes.length = 0; clearRect.apply(this, at); };
+  own.fillText = function (text, x, y) {
+    const m = this.measureText(text), left = x - m.actualBoundingBoxLeft, top = y - m.actualBoundingBoxAscent;
+    boxes.push([text, left, top, x + m.actualBoundingBoxRight, y + m.actualBoundingBoxDescent]);
+    fillText.call(this, text, x, y);
+  };
+  own.roundRect = function (x, y, w, h, r) {
+    boxes.push(["", x, y, x + w, y + h]);
+    roundRect.call(this, x, y, w, h, r);
+  };
+}"""
+
+
+@pytest.mark.parametrize(("width", "height"), [(300, 260), (390, 500), (640, 480)])
+def test_what_is_written_covers_nothing_that_is_written(views, width, height):
+    """Titles and ticks of the axes, scale bar, colour bar; of a small preview, too, whichever way it is turned."""
+    views.page.set_viewport_size({"width": width, "height": height})
+    view = robot_view("scara")
+    shown, blobs = ball_around_an_arm()
+    views.page.evaluate(BOXES)
+    for what in ((view.manifest, dict(view.blobs)), (shown, blobs)):
+        views.show(*what, layers={"axes": ON, "scale_bar": ON})
+        for direction in (None, *([np.cos(a), np.sin(a), up] for a in np.arange(0.2, 6.3, 0.7) for up in (0.3, 1.5))):
+            if direction:
+                views.page.evaluate("each => stage.fit(each)", list(map(float, direction)))
+            views.page.evaluate("stage.apply(structuredClone(settings))")
+            views.rest()
+            found = views.page.evaluate("boxes")
+            texts, panels = [each for each in found if each[0]], [each for each in found if not each[0]]
+            assert {"x [m]", "y [m]", "z [m]"} <= {each[0] for each in texts} or direction
+            scale = panels[0]  # holds its own text alone
+            assert sum(scale[1] < each[3] and each[1] < scale[3] and scale[2] < each[4] for each in texts) == 1
+            for k, (name, left, top, right, bottom) in enumerate(texts):
+                for other in (*texts[:k], *panels):
+                    apart = right <= other[1] or other[3] <= left or bottom <= other[2] or other[4] <= top
+                    within = left >= other[1] and right <= other[3] and top >= other[2] and bottom <= other[4]
+                    own = not other[0] and within and name[1:] != " [m]"
+                    assert apart or own, (direction, name, other)
 
 
 def test_slices_of_a_volume_that_is_hidden_are_in_the_picture(views):

@@ -15,6 +15,16 @@ PATIENCE_MS = 60_000.0  # machines are shared, and draw without a GPU
 NOISE = "GPU stall due to ReadPixels"  # a hint of the driver
 
 
+# Before the page's own script: how many objects the graphics of each canvas hold, in `held` of its context.
+HELD = """
+for (const what of ["Texture", "Buffer", "Framebuffer", "Renderbuffer", "Program"]) {
+  const of = WebGL2RenderingContext.prototype, make = of["create" + what], free = of["delete" + what];
+  const count = (gl, by) => { gl.held = {...gl.held, [what]: (gl.held?.[what] ?? 0) + by}; };
+  of["create" + what] = function (...given) { count(this, 1); return make.apply(this, given); };
+  of["delete" + what] = function (given) { if (given) count(this, -1); return free.call(this, given); };
+}
+"""
+
 JOB = {
     "analysis": "workspace",
     "robot": {"library": "ur5e"},
@@ -73,6 +83,22 @@ def settle(watched: Watched) -> None:
     page.wait_for_timeout(150)  # what was changed begins to be drawn
     for number in range(page.locator(".stage-host").count()):
         page.locator(".stage-host").nth(number).locator("xpath=.").and_(page.locator(finished)).wait_for()
+
+
+def link_holds_the_view(page: Any) -> None:
+    """Wait until the page has written its view into its address, by its own clock, however busy it is."""
+    page.evaluate("new Promise((done) => setTimeout(done, 800))")
+
+
+def relink(watched: Watched) -> None:
+    """Leave the page, and follow its own address, once that holds the view."""
+    link_holds_the_view(watched.page)
+    link = watched.page.url
+    assert "view=" in link
+    watched.page.goto("about:blank")
+    watched.page.goto(link)
+    watched.page.get_by_role("button", name="Show all").first.wait_for()
+    settle(watched)
 
 
 def pixels(watched: Watched) -> np.ndarray:

@@ -89,8 +89,8 @@ export interface Curves { name: string; label: string; closed: boolean; points: 
 /** A plane map, such as of placements: painted at z. Axes along world x and y. A click asks `placement`. */
 export interface FloorMap { name: string; label: string; T_world: number[]; shape: [number, number]; cell_m: [number, number]; origin_m: [number, number]; channels: Channel[] }
 
-/** Numbers for the plots beside the view; of a histogram x are the middles of its classes. */
-export interface Plot { name: string; label: string; kind: "histogram" | "curve"; x: { label: string; unit: string; values: Number[] }; y: { label: string; unit: string; values: Number[] }[]; channel?: { volume: string; name: string } }
+/** Numbers for the plots beside the view; of a histogram x are the middles of its classes. `sets`: what a point's x is of the view, the samples of a robot's volume or the scale of the mapping. */
+export interface Plot { name: string; label: string; kind: "histogram" | "curve"; x: { label: string; unit: string; values: Number[] }; y: { label: string; unit: string; values: Number[] }[]; channel?: { volume: string; name: string }; sets?: "samples" | "scale"; robot?: number }
 
 /** A slave's workspace in its master's world: p' = S R p_slave + offset, S the scales along the master's axes. */
 export interface Mapping { master: string; slave: string; scale: number | Vector; offset_m: Vector; R: number[]; volumes: { master: string; slave: string } }

@@ -27,6 +27,7 @@ export interface Settings {
   placements: (number[] | null)[]; // per robot, 16: stands elsewhere than in the file
   limits: Record<string, [number, number]>[]; // per robot, dragged
   tools: (number[] | null)[]; // per robot, 16
+  samples: (number | null)[]; // per robot, of the volume that is computed: as many as a point of a convergence curve has
   mapping: { scale: number | Vector; offset_m: Vector } | null;
   measure: Vector[]; // two points
   selected: { volume: string; cell: Vector } | null;
@@ -65,7 +66,7 @@ export function defaultSettings(manifest: Manifest): Settings {
   return {
     theme: "system", camera: null, volumes: Object.fromEntries(volumes), slices: [], layers: Object.fromEntries(hidden), channels: {},
     range: { low: null, high: null, scale: "linear", clipped: true }, colors: "viridis",
-    configurations: manifest.robots.map((r) => [...r.home]), placements: manifest.robots.map(() => null), limits: manifest.robots.map(() => ({})), tools: manifest.robots.map(() => null),
+    configurations: manifest.robots.map((r) => [...r.home]), placements: manifest.robots.map(() => null), limits: manifest.robots.map(() => ({})), tools: manifest.robots.map(() => null), samples: manifest.robots.map(() => null),
     mapping: manifest.mapping ? { scale: manifest.mapping.scale, offset_m: [...manifest.mapping.offset_m] } : null, measure: [], selected: null,
   };
 }

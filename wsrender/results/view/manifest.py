@@ -211,7 +211,10 @@ class ChannelName(TypedDict):
 
 @_strict
 class Plot(TypedDict):
-    """Numbers for a plot beside the view; of a histogram x are the middles of its classes."""
+    """Numbers for a plot beside the view; of a histogram x are the middles of its classes.
+
+    ``sets``: what a point's x is of the view: the samples of the volume of ``robot``, or the scale of the mapping.
+    """
 
     name: str
     label: str
@@ -219,6 +222,8 @@ class Plot(TypedDict):
     x: Quantity
     y: list[Quantity]
     channel: NotRequired[ChannelName]
+    sets: NotRequired[Literal["samples", "scale"]]
+    robot: NotRequired[int]
 
 
 @_strict

@@ -23,6 +23,7 @@ CLASSES = 40  # of a histogram
 ARC_STEP = np.deg2rad(3.0)  # of lines that stand for arcs
 FINEST = 65535  # steps of a quantised coordinate
 LEADING = ("label", "weight", "served", "share")  # what maps and points are coloured by first
+SCALES = "scales"  # of the tables in `CURVES` the one over the scale of a mapping
 _BAND = ("_low", "_high")  # endings of the columns that bound another
 
 
@@ -236,6 +237,34 @@ def _span(known: np.ndarray) -> tuple[float, float]:
     return (low, high) if high - low > room else (low - room, high + room)
 
 
+def convergence(document: Mapping[str, Any]) -> list[Plot]:
+    """What has settled over the samples of growing grids, of each robot whose sampling converges."""
+    plots: list[Plot] = []
+    job = document.get("job") or {}
+    entries, asked = (each.get("robots") or [each] for each in (document, job))
+    for number, (entry, own) in enumerate(zip(entries, asked, strict=False)):
+        grids = entry.get("convergence")
+        if not grids:
+            continue
+        name, sampling = f" of {entry['name']}" if len(entries) > 1 else "", own.get("sampling")
+        value, unit = "Global value", None
+        if sampling:  # a result may have come without its job
+            value = f"{said(sampling['by'])} of {said(sampling['index']).lower()}"
+            unit = entry["indices"].get(sampling["index"], {}).get("unit")
+        plots.append(
+            {
+                "name": f"convergence{name}",
+                "label": f"Convergence{name}",
+                "kind": "curve",
+                "x": quantity("samples", None, np.array([grid["samples"] for grid in grids])),
+                "y": [quantity(value, unit, np.array([grid["value"] for grid in grids]))],
+                "sets": "samples",
+                "robot": number,
+            }
+        )
+    return plots
+
+
 def curve_plots(tables: Mapping[str, Table]) -> list[Plot]:
     """Tables that are drawn as curves over their first column of numbers."""
     plots = []
@@ -248,5 +277,8 @@ def curve_plots(tables: Mapping[str, Table]) -> list[Plot]:
         )
         shown = [key for key in numbers[1:] if not key.endswith(_BAND)]
         if table is not None and len(table) and shown:
-            plots.append(curve_plot(name, said(name), table, numbers[0], shown))
+            plot = curve_plot(name, said(name), table, numbers[0], shown)
+            if name == SCALES:
+                plot["sets"] = "scale"
+            plots.append(plot)
     return plots

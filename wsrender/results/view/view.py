@@ -154,7 +154,12 @@ def view_of(
         glyphs=parts.add_arrows(blobs, [*parts.vector_fields(volumes), *shown.arrows], omitted),
         curves=[*lines, *shown.curves, *motions],
         maps=parts.add_maps(blobs, tables, base, encoding),
-        plots=[*parts.histograms(plot.samples, result.volume), *parts.curve_plots(tables), *shown.plots],
+        plots=[
+            *parts.histograms(plot.samples, result.volume),
+            *parts.convergence(document),
+            *parts.curve_plots(tables),
+            *shown.plots,
+        ],
         mapping=shown.mapping,
         pictures=[
             {"name": row.name, "label": row.caption or said(row.name), "url": f"{pictures}{PICTURES}{row.name}.png"}

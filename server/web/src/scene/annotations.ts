@@ -10,7 +10,10 @@ export const INKS: Record<"light" | "dark", Ink> = {
   dark: { text: "#e6ebf1", faint: "#3b4653", paper: "#12171d", panel: "rgba(18,23,29,.84)", accent: "#ff6f9f" },
 };
 
-interface Label { at: THREE.Vector3; text: string; bold: boolean; outward: THREE.Vector3 }
+interface Label { at: THREE.Vector3[]; text: string; bold: boolean; outward: THREE.Vector3 } // at: where it may stand, the best first
+type Box = [left: number, top: number, right: number, bottom: number]; // CSS pixels
+
+const ALONG = [0.5, 0.38, 0.62, 0.26, 0.74, 0.14, 0.86]; // an axis, where its title may stand
 
 /** The three far walls of a box with a grid; made again when the eye passes to another octant. */
 export class AxesBox extends THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial> {
@@ -64,8 +67,8 @@ export class AxesBox extends THREE.LineSegments<THREE.BufferGeometry, THREE.Line
         p[a] = v;
         return new THREE.Vector3(...(p as [number, number, number]));
       };
-      for (const v of ticks[a]!) this.labels.push({ at: place(v), text: text(v, this.step), bold: false, outward });
-      this.labels.push({ at: place((low.getComponent(a) + high.getComponent(a)) / 2), text: `${"xyz"[a]} [m]`, bold: true, outward });
+      for (const v of ticks[a]!) this.labels.push({ at: [place(v)], text: text(v, this.step), bold: false, outward });
+      this.labels.push({ at: ALONG.map((share) => place(low.getComponent(a) + share * (high.getComponent(a) - low.getComponent(a)))), text: `${"xyz"[a]} [m]`, bold: true, outward });
     }
   }
 
@@ -92,44 +95,67 @@ export function write(g: CanvasRenderingContext2D, w: Written): void {
     g.strokeStyle = ink.paper; g.lineWidth = 3; g.globalAlpha = 0.85; g.strokeText(shown, x, y);
     g.globalAlpha = 1; g.fillStyle = ink.text; g.fillText(shown, x, y);
   };
-  if (w.axes) writeAxes(g, w, w.axes, halo);
-  if (w.metre) writeScale(g, w, w.metre);
-  if (w.measure.length) writeMeasure(g, w);
+  const taken: Box[] = []; // where no label of the axes may stand
+  if (w.metre) taken.push(writeScale(g, w, w.metre));
   let right = w.width - 22;
-  for (const bar of w.bars) right -= writeBar(g, w, bar, right, halo) + 24;
+  for (const bar of w.bars) {
+    const box = writeBar(g, w, bar, right, halo);
+    taken.push(box);
+    right = box[0] - 10;
+  }
   g.textAlign = "left"; g.textBaseline = "top";
-  if (w.title) { g.font = `600 17px ${FONT}`; halo(w.title, 18, 16); }
+  if (w.title) {
+    g.font = `600 17px ${FONT}`;
+    const title = shortened(g, w.title, Math.max(120, right - 18));
+    halo(title, 18, 16);
+    taken.push([18, 16, 18 + g.measureText(title).width, 36]);
+  }
+  if (w.axes) writeAxes(g, w, w.axes, taken, halo);
+  if (w.measure.length) writeMeasure(g, w);
 }
 
-function writeAxes(g: CanvasRenderingContext2D, w: Written, axes: AxesBox, halo: (t: string, x: number, y: number) => void): void {
-  const taken: [number, number, number, number][] = [];
+/** A text that is no wider than so many pixels, in the font that is set. */
+function shortened(g: CanvasRenderingContext2D, whole: string, width: number): string {
+  let shown = whole;
+  while (shown.length > 4 && g.measureText(shown).width > width) shown = `${shown.slice(0, -2)}…`;
+  return shown;
+}
+
+function writeAxes(g: CanvasRenderingContext2D, w: Written, axes: AxesBox, taken: Box[], halo: (t: string, x: number, y: number) => void): void {
   g.textAlign = "center"; g.textBaseline = "middle";
   for (const label of [...axes.labels].sort((a, b) => +b.bold - +a.bold)) {
-    const p = w.project(label.at), o = w.project(label.at.clone().addScaledVector(label.outward, axes.step));
-    if (!p.front) continue;
-    const d = Math.hypot(o.x - p.x, o.y - p.y) || 1, out = label.bold ? 44 : 17;
-    const beside = p.x + ((o.x - p.x) / d) * out, y = p.y + ((o.y - p.y) / d) * out;
     g.font = label.bold ? `600 13px ${FONT}` : `12px ${FONT}`;
-    const half = g.measureText(label.text).width / 2 + 2, inside = p.x >= 0 && p.x <= w.width; // then its label too
-    const x = inside ? Math.max(half, Math.min(w.width - half, beside)) : beside;
-    const box: [number, number, number, number] = [x - half, y - 8, x + half, y + 8];
-    if (taken.some((t) => box[0] < t[2] && t[0] < box[2] && box[1] < t[3] && t[1] < box[3])) continue;
-    taken.push(box);
-    halo(label.text, x, y);
+    const half = g.measureText(label.text).width / 2 + 2;
+    for (const at of label.at) {
+      const p = w.project(at), o = w.project(at.clone().addScaledVector(label.outward, axes.step));
+      if (!p.front) continue;
+      const d = Math.hypot(o.x - p.x, o.y - p.y) || 1, out = label.bold ? 44 : 17;
+      const beside = [p.x + ((o.x - p.x) / d) * out, p.y + ((o.y - p.y) / d) * out] as const, inside = p.x >= 0 && p.x <= w.width && p.y >= 0 && p.y <= w.height; // then its label too
+      const [x, y] = inside ? [clamped(beside[0], half, w.width), clamped(beside[1], 9, w.height)] : beside;
+      const box: Box = [x - half, y - 8, x + half, y + 8];
+      if (taken.some((t) => box[0] < t[2] && t[0] < box[2] && box[1] < t[3] && t[1] < box[3])) continue;
+      taken.push(box);
+      halo(label.text, x, y);
+      break;
+    }
   }
 }
 
-function writeScale(g: CanvasRenderingContext2D, w: Written, metre: number): void {
+const clamped = (value: number, half: number, whole: number): number => Math.max(half, Math.min(whole - half, value));
+
+function writeScale(g: CanvasRenderingContext2D, w: Written, metre: number): Box {
   const most = Math.min(150, w.width / 5), exact = most / metre, power = 10 ** Math.floor(Math.log10(exact));
   const length = [5, 2, 1].map((k) => k * power).find((l) => l <= exact) ?? power, px = length * metre, x = 20, y = w.height - 22;
   const name = length >= 1 ? `${text(length)} m` : length >= 0.01 ? `${text(+(length * 100).toPrecision(3))} cm` : `${text(+(length * 1000).toPrecision(3))} mm`;
   g.font = `12px ${FONT}`;
+  const wide = Math.max(px, g.measureText(name).width) + 16;
   g.fillStyle = w.ink.panel;
-  g.beginPath(); g.roundRect(x - 8, y - 24, Math.max(px, g.measureText(name).width) + 16, 36, 5); g.fill();
+  g.beginPath(); g.roundRect(x - 8, y - 24, wide, 36, 5); g.fill();
   g.strokeStyle = g.fillStyle = w.ink.text; g.lineWidth = 2;
   g.beginPath(); g.moveTo(x, y - 4); g.lineTo(x, y + 3); g.lineTo(x + px, y + 3); g.lineTo(x + px, y - 4); g.stroke();
   g.textAlign = "left"; g.textBaseline = "bottom";
   g.fillText(name, x, y - 6);
+  return [x - 8, y - 24, x - 8 + wide, y + 12];
 }
 
 function writeMeasure(g: CanvasRenderingContext2D, w: Written): void {
@@ -150,32 +176,33 @@ function writeMeasure(g: CanvasRenderingContext2D, w: Written): void {
   g.fillStyle = w.ink.text; g.fillText(shown, x, y);
 }
 
-/** A bar whose right end stands at x, pointed where values lie beyond, or a list of names. Returns how wide it is. */
-function writeBar(g: CanvasRenderingContext2D, w: Written, scale: ColorScale, right: number, halo: (t: string, x: number, y: number) => void): number {
+/** A bar whose right end stands at x, pointed where values lie beyond, or a list of names. Returns the box of its panel. */
+function writeBar(g: CanvasRenderingContext2D, w: Written, scale: ColorScale, right: number, halo: (t: string, x: number, y: number) => void): Box {
   const wide = Math.round(Math.min(260, Math.max(100, 0.28 * w.width)));
   g.font = `600 13px ${FONT}`;
-  let title = scale.title;
-  while (title.length > 4 && g.measureText(title).width > Math.max(wide, w.width * (w.bars.length > 1 ? 0.42 : 0.8))) title = `${title.slice(0, -2)}…`;
-  const titled = g.measureText(title).width, panel = (width: number, height: number) => {
+  const title = shortened(g, scale.title, Math.max(wide, w.width * (w.bars.length > 1 ? 0.42 : 0.8)));
+  const titled = g.measureText(title).width, panel = (width: number, height: number): Box => {
+    const box: Box = [right - width - 14, 6, right + 14, 6 + height];
     g.fillStyle = w.ink.panel;
-    g.beginPath(); g.roundRect(right - width - 14, 6, width + 28, height, 6); g.fill();
+    g.beginPath(); g.roundRect(box[0], box[1], width + 28, height, 6); g.fill();
     g.font = `600 13px ${FONT}`; g.textAlign = "right"; g.textBaseline = "top";
     halo(title, right, 12);
     g.font = `12px ${FONT}`; g.textBaseline = "middle"; g.fillStyle = g.strokeStyle = w.ink.text; g.lineWidth = 1;
+    return box;
   };
   if (scale.categories) {
     const shown = scale.categories.slice(0, Math.max(1, Math.floor((w.height - 60) / 18)));
     g.font = `12px ${FONT}`;
     const width = Math.max(titled, ...shown.map((c) => g.measureText(c.name).width + 20));
-    panel(width, 34 + 18 * shown.length);
+    const box = panel(width, 34 + 18 * shown.length);
     shown.forEach((c, i) => {
       g.fillStyle = w.ink.text; g.fillText(c.name, right - 20, 42 + 18 * i);
       g.fillStyle = c.color; g.fillRect(right - 12, 36 + 18 * i, 12, 12);
     });
-    return width;
+    return box;
   }
   const x = Math.round(right - wide), y = 34, high = 12, ticks = scale.ticks(Math.max(3, Math.round(wide / 45))), step = !scale.log && ticks.length > 1 ? ticks[1]! - ticks[0]! : 0;
-  panel(Math.max(titled, wide), 62);
+  const box = panel(Math.max(titled, wide), 62);
   const color = (i: number) => `rgb(${scale.colors.subarray(4 * i, 4 * i + 3).join()})`;
   for (let k = 0; k < wide; k++) { g.fillStyle = color(Math.floor((255.99 * (k + 0.5)) / wide)); g.fillRect(x + k, y, 1, high); }
   const tip = (at: number, to: number, i: number) => { g.fillStyle = color(i); g.beginPath(); g.moveTo(at, y); g.lineTo(at, y + high); g.lineTo(to, y + high / 2); g.fill(); };
@@ -190,5 +217,5 @@ function writeBar(g: CanvasRenderingContext2D, w: Written, scale: ColorScale, ri
     g.fillText(shown, at, y + high + 6);
     free = at + half + 6;
   }
-  return Math.max(titled, wide);
+  return box;
 }

@@ -210,7 +210,7 @@ export class Stage {
     this.rescale();
     if (settings.camera && !same(settings.camera, this.camera)) this.look(settings.camera);
     this.select();
-    const look = JSON.stringify({ ...settings, limits: null }); // of limits nothing is drawn: the volume that follows needs the cores
+    const look = JSON.stringify({ ...settings, limits: null, samples: null }); // of them nothing is drawn: the volume that follows needs the cores
     if (look !== this.drawn) this.ask();
     this.drawn = look;
   }

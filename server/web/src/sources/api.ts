@@ -59,21 +59,20 @@ export class Api {
     return (await this.fetch(path, { method: "POST", ...json, ...(signal ? { signal } : {}) })).json();
   }
 
-  /** Server-sent events by fetch: EventSource sends no Authorization. Goes on where it broke off until `ended` says so. */
-  async *events(path: string, signal: AbortSignal): AsyncGenerator<Event> {
-    let last = "";
+  /** Server-sent events after one, by fetch: EventSource sends no Authorization. Goes on where it broke off until it is left, aborted or refused. */
+  async *events(path: string, after: number, signal: AbortSignal): AsyncGenerator<Event> {
+    let last = String(after);
     while (!signal.aborted) {
       try {
-        const response = await this.fetch(path, { signal, headers: last ? { "Last-Event-ID": last } : {} });
+        const response = await this.fetch(path, { signal, headers: { "Last-Event-ID": last } });
         for await (const event of eventsOf(response.body!)) {
           last = event.id || last;
           yield event;
         }
-        return; // the server closes the stream with the job's end
       } catch (error) {
         if (signal.aborted || error instanceof ApiError) return;
-        await new Promise((done) => setTimeout(done, LOOK_AGAIN_MS));
       }
+      await new Promise((done) => setTimeout(done, LOOK_AGAIN_MS)); // a stream ends with its job, but also with the server
     }
   }
 

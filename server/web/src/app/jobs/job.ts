@@ -18,9 +18,13 @@ export interface Job {
   labels: Record<string, string>;
   priority: number;
   attempt: number;
+  last_event: number; // id of its newest
   progress: Progress;
   error: Problem | null;
   warnings: { code: string; message: string }[];
 }
+
+/** Of what is known of a job and what is told, the newer: an event overtakes an answer that was written before it. */
+export const newer = (known: Job | undefined, told: Job): Job => (known && known.last_event > told.last_event ? known : told);
 
 export interface JobFile { name: string; media_type: string; bytes: number; href: string }

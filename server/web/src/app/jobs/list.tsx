@@ -5,7 +5,7 @@ import type { Api } from "../../sources/api";
 import { Schemas, words } from "../form/schema";
 import { message, number, seconds, size, useLoaded, download } from "../parts";
 import type { Go } from "../route";
-import { ENDED, STATES, type Job, type JobFile, type Progress, type State } from "./job";
+import { ENDED, newer, STATES, type Job, type JobFile, type Progress, type State } from "./job";
 
 const MOST_FOLLOWED = 3; // browsers open six connections to a host
 const LOOK_AGAIN_MS = 4000;
@@ -30,7 +30,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
   const load = async () => {
     try {
       const page = await api.get<{ items: Job[]; next_cursor: string | null }>(query());
-      setJobs((before) => [...page.items, ...(further.current ? olderThan(page.items, before ?? []) : [])]);
+      setJobs((before) => [...page.items.map((job) => newer(before?.find((each) => each.id === job.id), job)), ...(further.current ? olderThan(page.items, before ?? []) : [])]);
       if (!further.current) setNext(page.next_cursor);
       setProblem("");
     } catch (error) {
@@ -47,7 +47,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
       setProblem(message(error));
     }
   };
-  const put = (id: string, change: (job: Job) => Job) => setJobs((before) => before && before.map((each) => (each.id === id ? change(each) : each)));
+  const put = (id: string, change: (job: Job) => Job) => setJobs((before) => before && before.map((each) => (each.id === id ? newer(each, change(each)) : each)));
 
   useEffect(() => {
     setJobs(null);
@@ -58,29 +58,29 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
   }, [state, analysis, label, api.key.value]);
 
   useEffect(() => { // the newest that go on are followed by their events
-    const going = (jobs ?? []).filter((job) => !ENDED.includes(job.state)).slice(0, MOST_FOLLOWED).map((job) => job.id);
+    const going = (jobs ?? []).filter((job) => !ENDED.includes(job.state)).slice(0, MOST_FOLLOWED);
     for (const [id, controller] of followed.current) {
-      if (going.includes(id)) continue;
+      if (going.some((job) => job.id === id)) continue;
       controller.abort();
       followed.current.delete(id);
     }
-    for (const id of going) if (!followed.current.has(id)) {
+    for (const job of going) if (!followed.current.has(job.id)) {
       const controller = new AbortController();
-      followed.current.set(id, controller);
-      void follow(id, controller.signal);
+      followed.current.set(job.id, controller);
+      void follow(job, controller.signal);
     }
   }, [jobs?.map((job) => job.id + job.state).join()]);
   useEffect(() => () => { for (const controller of followed.current.values()) controller.abort(); }, []);
 
-  const follow = async (id: string, signal: AbortSignal) => {
-    for await (const { event, data } of api.events(`v1/jobs/${id}/events`, signal)) {
-      if (event === "progress") put(id, (job) => ({ ...job, progress: { ...job.progress, ...(data as Partial<Progress>) } }));
+  const follow = async ({ id, last_event: after }: Job, signal: AbortSignal) => { // what came before is in the list
+    for await (const { id: number, event, data } of api.events(`v1/jobs/${id}/events`, after, signal)) {
+      const last_event = Number(number);
+      if (event === "progress") put(id, (job) => ({ ...job, last_event, progress: { ...job.progress, ...(data as Partial<Progress>) } }));
       if (event !== "state") continue;
-      put(id, (job) => ({ ...job, state: data.state as State, error: data.error ?? null }));
-      if (ENDED.includes(data.state)) {
-        setSaid(`Job ${id.slice(0, 8)} has ${data.state === "succeeded" ? "succeeded" : data.state.replace("_", " ")}.`);
-        void load();
-      }
+      put(id, (job) => ({ ...job, last_event, state: data.state as State, error: data.error ?? null }));
+      if (!ENDED.includes(data.state)) continue;
+      setSaid(`Job ${id.slice(0, 8)} has ${data.state === "succeeded" ? "succeeded" : data.state.replace("_", " ")}.`);
+      return void load();
     }
   };
   const act = async (job: Job, what: "cancel" | "retry" | "delete") => {

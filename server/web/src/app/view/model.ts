@@ -83,7 +83,7 @@ export class ViewModel {
     if (settings.selected) void this.select(settings.selected.volume, settings.selected.cell, false);
     manifest.robots.forEach((_, robot) => {
       if (!manifest.volumes.length && settings.volumes[`live_${robot}`]?.visible) this.followVolume(robot);
-      else if (this.isChanged(robot)) this.recompute(robot, true);
+      else if (this.isComputed(robot)) this.recompute(robot, true);
     });
   }
 
@@ -290,6 +290,9 @@ export class ViewModel {
     return Object.keys(limits).length > 0 || Boolean(tool ?? placement);
   }
 
+  /** Whether its volume is another than the file's. */
+  private isComputed(robot: number): boolean { return this.isChanged(robot) || this.settings.value!.samples[robot] != null; }
+
   private async askIndices(robot: number): Promise<void> {
     try {
       const found = (await this.ask({ ask: "indices_at", robot, q: this.settings.value!.configurations[robot]!, ...this.changes(robot) } as Request)) as IndicesAnswer;
@@ -429,6 +432,12 @@ export class ViewModel {
     this.dragged(robot, { placements });
   }
 
+  /** The volume of so many samples; null: as the file has it. */
+  setSamples(robot: number, count: number | null): void {
+    this.update({ samples: this.settings.value!.samples.map((each, i) => (i === robot ? count : each)) });
+    this.recompute(robot, true);
+  }
+
   /** Whether the volume of a robot is there, to follow what is dragged. */
   isFollowed(robot: number): boolean { return this.followed.has(robot) || Boolean(this.manifest.value?.volumes.length); }
 
@@ -441,7 +450,7 @@ export class ViewModel {
   /** The volume of what was dragged: in large voxels while one drags, then in those of the file. */
   recompute(robot: number, fine: boolean): void {
     if (!this.source.ask || !this.isFollowed(robot)) return;
-    if (!this.isChanged(robot) && !this.followed.has(robot)) return this.unchanged(robot);
+    if (!this.isComputed(robot) && !this.followed.has(robot)) return this.unchanged(robot);
     clearTimeout(this.fineTimer);
     if (!fine) this.fineTimer = window.setTimeout(() => this.recompute(robot, true), FINE_AFTER_MS);
     this.wanted.set(robot, fine);
@@ -466,14 +475,14 @@ export class ViewModel {
     this.live.value = { busy: true, said: this.live.value?.said ?? "", wrong: false };
     try {
       const { header, blobs } = await this.source.ask!({
-        ask: "volume", robot, index, statistic, samples: SAMPLES,
+        ask: "volume", robot, index, statistic, samples: settings.samples[robot] ?? SAMPLES,
         voxel_size_m: !known ? null : fine ? known.size : Math.max(known.size, known.longest / COARSE_CELLS), ...this.changes(robot),
       });
       if (manifest !== this.manifest.value) return;
       const found = header as VolumeAnswer, first = !this.added.has(found.volume.name);
-      if (file && !this.isChanged(robot)) return;
+      if (file && !this.isComputed(robot)) return;
       if (!file && !known) this.followed.set(robot, sized(found.volume));
-      const channel = found.volume.channels[0], label = !this.isChanged(robot) ? "Workspace" : manifest.robots.length > 1 ? `${this.robot(robot).name}, as it was changed` : "As it was changed";
+      const channel = found.volume.channels[0], label = !this.isChanged(robot) ? (settings.samples[robot] ? `Of ${found.samples.toLocaleString("en")} samples` : "Workspace") : manifest.robots.length > 1 ? `${this.robot(robot).name}, as it was changed` : "As it was changed";
       const shown = { ...(own ?? volumeSettings(found.volume, manifest)), visible: true, channel: channel ? channelKey(channel) : "", minus: "" };
       batch(() => {
         void this.add({ ...found.volume, label }, blobs, first ? shown : { channel: shown.channel }).then(() => { if (first && !file && !this.camera.value) this.stage?.fit(); });
@@ -499,7 +508,7 @@ export class ViewModel {
   forget(robot: number): void {
     const settings = this.settings.value!;
     const without = <T>(list: T[], none: T) => list.map((each, i) => (i === robot ? none : each));
-    this.update({ limits: without(settings.limits, {}), tools: without(settings.tools, null), placements: without(settings.placements, null) });
+    this.update({ limits: without(settings.limits, {}), tools: without(settings.tools, null), placements: without(settings.placements, null), samples: without(settings.samples, null) });
     this.postures.value = null;
     this.recompute(robot, true);
   }

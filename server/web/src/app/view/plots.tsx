@@ -1,8 +1,8 @@
-/** Histograms and curves beside the view, and tied to it: a range that is dragged in a histogram is that of the colours. */
+/** Histograms and curves beside the view, and tied to it: a range that is dragged in a histogram is that of the colours; a point of a curve is the volume of as many samples, or the mapping's scale. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
-import type { Plot } from "../../contract";
+import type { Plot, Vector } from "../../contract";
 import { titled } from "../../scene/colors";
 import { channelKey } from "../../settings";
 import { Section, Select } from "./controls";
@@ -10,6 +10,7 @@ import { channelOf } from "./look";
 import type { ViewModel } from "./model";
 
 const WIDTH = 266, HEIGHT = 168;
+const DRAGGED = 4; // pixels: less is a click
 const WHOLE = [1, 2, 5, 10, 20, 50].flatMap((step) => [1, 1e2, 1e4, 1e6, 1e8].map((size) => step * size)).sort((a, b) => a - b); // steps of a count
 const whole = (values: (number | null)[]): boolean => values.every((v) => v === null || Number.isInteger(v));
 
@@ -27,13 +28,25 @@ export function Plots({ model }: { model: ViewModel }) {
   );
 }
 
+/** What the x of a curve's points is of the view: what is shown, and how another is. Null where it is nothing that could be changed. */
+function setting(model: ViewModel, { sets, robot = 0 }: Plot): { shown: number | null; put(x: number | null): void } | null {
+  const settings = model.settings.value!, { mapping } = model.manifest.value!;
+  if (sets === "samples" && model.canAsk && model.manifest.value!.robots[robot]) return { shown: settings.samples[robot] ?? null, put: (count) => model.setSamples(robot, count) };
+  if (sets !== "scale" || !mapping) return null;
+  const own = settings.mapping ?? mapping, mean = typeof own.scale === "number" ? own.scale : Math.cbrt(own.scale.reduce((a, b) => a * b)); // what such a curve is drawn over
+  const scaled = (by: number) => (typeof own.scale === "number" ? own.scale * by : (own.scale.map((each) => each * by) as Vector));
+  return { shown: mean, put: (scale) => model.update({ mapping: scale === null ? null : { scale: scaled(scale / mean), offset_m: own.offset_m } }) };
+}
+
 function OnePlot({ model, plot }: { model: ViewModel; plot: Plot }) {
   const host = useRef<HTMLDivElement>(null), chart = useRef<uPlot | null>(null);
   const settings = model.settings.value!, channel = channelOf(model), voxel = model.voxel.value;
   const tied = plot.channel !== undefined && channel !== undefined && channelKey(channel) === plot.channel.name;
   const value = voxel?.values.find((each) => channelKey(each) === plot.channel?.name)?.value ?? null;
   const marks = useRef<{ low: number | null; high: number | null; value: number | null }>({ low: null, high: null, value: null });
-  marks.current = { low: tied ? settings.range.low : null, high: tied ? settings.range.high : null, value };
+  const set = setting(model, plot), put = useRef(set?.put), marked = set ? set.shown : value;
+  put.current = set?.put;
+  marks.current = { low: tied ? settings.range.low : null, high: tied ? settings.range.high : null, value: marked };
   useEffect(() => {
     const color = (name: string) => getComputedStyle(host.current!).getPropertyValue(name).trim();
     const [text, line, accent] = [color("--muted"), color("--line"), color("--accent")];
@@ -60,11 +73,19 @@ function OnePlot({ model, plot }: { model: ViewModel; plot: Plot }) {
       ctx.restore();
     };
     const u = new uPlot({
-      width: WIDTH, height: HEIGHT, legend: { show: plot.y.length > 1, live: false }, cursor: { drag: { x: histogram, y: false, setScale: !histogram } },
-      scales: { x: { time: false } }, axes: [axis(titled(plot.x), plot.x.values), axis(plot.y[0] ? titled(plot.y[0]) : "", plot.y.flatMap((each) => each.values), true)],
+      width: WIDTH, height: HEIGHT, legend: { show: plot.y.length > 1, live: false }, cursor: { drag: { x: true, y: false, setScale: !histogram, dist: DRAGGED, click: () => undefined } },
+      scales: { x: { time: false, distr: plot.sets === "samples" ? 3 : 1 } }, axes: [axis(titled(plot.x), plot.x.values), axis(plot.y[0] ? titled(plot.y[0]) : "", plot.y.flatMap((each) => each.values), true)],
       series: [{}, ...plot.y.map((each, i) => ({ label: each.label, stroke: colors[i % 4]!, width: 1.5, ...(histogram ? { paths: uPlot.paths.bars!({ size: [1, 64] }), fill: colors[i % 4]! + "99", points: { show: false } } : { points: { show: plot.x.values.length < 40 } }) }))],
       hooks: {
         draw: [drawMarks],
+        ready: [({ over, posToIdx, syncRect }) => {
+          let from = 0;
+          over.addEventListener("pointerdown", ({ clientX }) => { from = clientX; });
+          over.addEventListener("click", ({ clientX }) => {
+            if (Math.abs(clientX - from) < DRAGGED) put.current?.(plot.x.values[posToIdx(clientX - over.getBoundingClientRect().left)] ?? null);
+          });
+          over.addEventListener("pointerenter", () => syncRect()); // a panel that scrolls in a shadow root tells the chart nothing
+        }],
         setSelect: [(chart) => {
           if (!histogram || !plot.channel || chart.select.width < 3) return;
           const low = chart.posToVal(chart.select.left, "x"), high = chart.posToVal(chart.select.left + chart.select.width, "x");
@@ -76,11 +97,14 @@ function OnePlot({ model, plot }: { model: ViewModel; plot: Plot }) {
     chart.current = u;
     return () => u.destroy();
   }, [plot, settings.theme]);
-  useEffect(() => chart.current?.redraw(false), [settings.range, value, tied]);
+  useEffect(() => chart.current?.redraw(false), [settings.range, marked, tied]);
   const total = plot.y[0]?.values.length ?? 0;
   return (
     <>
       <div class="plot" ref={host} role="img" aria-label={`${plot.label}: ${total} values of ${plot.x.label} from ${plot.x.values[0]} to ${plot.x.values.at(-1)}`} />
+      {set && plot.sets === "samples" && <Select label="Volume of" value={String(set.shown ?? "")} options={[{ value: "", label: "the result" }, ...plot.x.values.map((each) => ({ value: String(each), label: `${each!.toLocaleString("en")} samples` }))]} onChange={(count) => set.put(count ? Number(count) : null)} />}
+      {set && <p class="help">{plot.sets === "samples" ? "Click a point: the volume of as many Sobol samples is shown." : "Click it: the mapping takes that scale."} Drag over it to look closer, double-click for all.</p>}
+      {set && plot.sets === "samples" && model.live.value && <p class={model.live.value.wrong ? "problem" : "help"} role="status">{model.live.value.busy ? "Computing …" : model.live.value.said}</p>}
       {plot.kind === "histogram" && plot.channel && <p class="help">{tied ? "Drag over it to choose the range of the colours." : "Show its channel to choose the colours' range here."}</p>}
     </>
   );

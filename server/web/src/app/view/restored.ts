@@ -47,10 +47,11 @@ export function restored(first: Settings, link: unknown, { robots }: Manifest): 
   settings.configurations = ofRobots("configurations", (robot) => list(number, robots[robot]!.home.length));
   settings.placements = ofRobots("placements", () => orNull(matrix));
   settings.tools = ofRobots("tools", () => orNull(matrix));
+  settings.samples = ofRobots("samples", () => orNull((value) => Number.isInteger(value) && (value as number) > 0));
   settings.limits = ofRobots("limits", () => object).map((each, robot) => entries(each, (range, joint) => robots[robot]!.chain.joints.includes(joint) && list(number, 2)(range)));
   return settings;
 
-  function ofRobots<T extends "configurations" | "placements" | "tools" | "limits">(name: T, is: (robot: number) => Is): Settings[T] {
+  function ofRobots<T extends "configurations" | "placements" | "tools" | "limits" | "samples">(name: T, is: (robot: number) => Is): Settings[T] {
     const given = link as Record<string, unknown>, values = Array.isArray(given[name]) ? (given[name] as unknown[]) : [];
     return first[name].map((home, robot) => (is(robot)(values[robot]) ? values[robot] : home)) as Settings[T];
   }

@@ -109,7 +109,7 @@ function Changes({ model, i, onJob, jobLabel }: RobotsProps & { i: number }) {
         <p class={live?.wrong ? "problem" : "help"} role="status" data-volume={live?.volume_m3} data-live={live ? (live.busy ? "busy" : "done") : ""}>{live ? (live.busy ? "Computing …" : live.said) : model.isFollowed(i) ? "The volume is the file's." : "There is no volume yet."}</p>
         <div class="wrap">
           {!model.isFollowed(i) && <button onClick={() => model.followVolume(i)}>Compute its volume</button>}
-          <button disabled={!changed} onClick={() => model.forget(i)}>{model.manifest.value!.analysis ? "Back to the result" : "Back to the robot's own"}</button>
+          <button disabled={!changed && settings.samples[i] == null} onClick={() => model.forget(i)}>{model.manifest.value!.analysis ? "Back to the result" : "Back to the robot's own"}</button>
           {onJob && <button disabled={!job} title={changed && !job ? "This analysis has no such robot in its document." : ""} onClick={() => onJob(job!)}>{jobLabel}</button>}
         </div>
       </div>
