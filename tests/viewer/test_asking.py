@@ -5,6 +5,7 @@ import zlib
 from base64 import urlsafe_b64encode
 
 import httpx2
+import matplotlib as mpl
 import numpy as np
 import psutil
 import pytest
@@ -87,6 +88,53 @@ def test_the_tool_is_dragged_to_where_it_can_be_and_to_where_it_cannot(watched: 
     assert red > 1.5 * max(green, blue)
 
 
+def test_all_postures_of_the_tool_are_stepped_through(watched: Watched, client: ws.Client, searched: str) -> None:
+    """As many as the library finds, each once, while the tip stands; the last is followed by the first."""
+    q = [0.3, -1.4, 1.6, -0.4, 1.1, 0.2]
+    found = ws.postures(UR5E, UR5E.forward_kinematics(q)[0])
+    opened(watched, f"/job/{searched}", configurations=[q])
+    page, place, seen = watched.page, tip(watched), []
+    page.get_by_role("button", name="Other postures").click()
+    for number in [*range(1, len(found) + 1), 1]:
+        page.get_by_text(f"{number} of {len(found)}", exact=True).wait_for()
+        joints = [page.get_by_label(f"Joint {name} [°], as a number").input_value() for name in UR5E.joint_names]
+        seen.append(tuple(map(float, joints)))
+        assert np.abs(tip(watched) - place).max() < 1e-6
+        page.get_by_role("button", name="Next posture").click()
+    assert len(found) > 1 and len(set(seen)) == len(found) and seen[0] == seen[-1]
+    nearest = np.abs(np.rad2deg(found.configurations)[:, None] - np.array(seen)).max(axis=2).min(axis=1)
+    assert nearest.max() < 0.1
+
+
+def test_a_limit_that_is_dragged_is_followed_in_larger_voxels_first(watched: Watched, client: ws.Client) -> None:
+    """Of as many samples; then in those of the file, with the limit that was set last."""
+    fine = 0.025
+    done = client.submit(JOB | {"voxel_size_m": fine}).wait()
+    asked: list[dict] = []
+    watched.page.on("websocket", lambda socket: socket.on("framesent", lambda text: asked.append(json.loads(text))))
+    opened(watched, f"/job/{done.id}")
+    page = watched.page
+    page.get_by_text("Change limits").click()
+    slider = page.get_by_label("Upper limit of joint2 [°]", exact=True)
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    page.mouse.move(box["x"] + box["width"] - 8, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    for share in (0.8, 0.7, 0.6, 0.5):
+        page.mouse.move(box["x"] + share * box["width"], box["y"] + box["height"] / 2)
+        page.wait_for_timeout(60)
+    page.mouse.up()
+    last = np.deg2rad(float(page.get_by_label("Upper limit of joint2 [°], as a number").input_value()))
+    page.wait_for_timeout(600)  # a hand that rests
+    page.locator("[data-live=done][data-volume]").wait_for()
+    found = [each for each in asked if each["ask"] == "volume"]
+    assert found[-1]["voxel_size_m"] == fine
+    assert found[0]["voxel_size_m"] > 1.2 * fine and len(found) >= 2
+    assert {each["samples"] for each in found} == {1 << 20}
+    assert found[-1]["limits"]["joint2"][1] == pytest.approx(last, abs=1e-3)
+    assert page.get_by_label("Show As it was changed", exact=True).is_checked()
+
+
 def test_the_joints_ways_are_drawn_and_stepped_along_while_the_tip_stands(watched: Watched, client: ws.Client) -> None:
     """Of an arm with a joint to spare: orange where the self-motion of the posture goes, which ends with the pose."""
     redundant = client.submit(JOB | {"robot": {"library": "kuka_iiwa14"}}).wait().id
@@ -122,7 +170,18 @@ def test_a_click_on_a_map_stands_the_robot_there(watched: Watched, client: ws.Cl
     job = {"analysis": "base_placement", "robot": {"library": "puma560"}, "over": over, "refine": False}
     done = client.submit(job | {"targets": [{"position_m": [0.3, 0.1, 0.8]}]}).wait()
     table, q, half = done.result().tables["placement_map"], [0.4, -0.5, 0.6, 0.3, 0.2, 0.1], 1.2
-    opened(watched, f"/job/{done.id}", camera=looking([0, 0, 0.2], half, along="z"), configurations=[q])
+    hidden = dict.fromkeys(("robot:0", "axes", "scale_bar", "targets"), OFF)
+    opened(watched, f"/job/{done.id}", camera=looking([0, 0, 0.2], half, along="z"), configurations=[q], layers=hidden)
+    picture, box = pixels(watched), watched.page.locator(".stage-host").bounding_box()
+    rows = np.arange(len(table)).reshape(4, 2)
+    served = table["served"][rows]
+    assert len(np.unique(served)) == 2
+    for cell in np.ndindex(4, 2):  # painted on the floor, in the colours of what is served
+        center = [-0.45 + 0.3 * cell[0], -0.2 + 0.4 * cell[1], 0.2]
+        ((column, row),) = spots(watched, center, [0, 0, 0.2], half, along="z").astype(int)
+        color = mpl.colormaps["viridis"](float(served[cell] - served.min()), bytes=True)[:3]
+        assert np.abs(picture[row - int(box["y"]), column - int(box["x"])] - np.array(color, int)).max() <= 1, cell
+    watched.page.get_by_label("Show puma560", exact=True).check()
     arm = ws.load_robot("puma560")
     from_base = np.linalg.inv(arm.chain.T_world_base) @ arm.forward_kinematics(q)[0]
     said = watched.page.locator("h3:has-text('Where the robot stands') + dl")

@@ -140,8 +140,10 @@ def at_model(watched: Watched) -> tuple[Any, Any]:
 def test_a_model_is_dropped_into_the_form(watched: Watched, client: ws.Client) -> None:
     """It is uploaded, named by its SHA-256, shown, and computed; what is no model is refused where it was dropped."""
     page, (field, problem) = watched.page, at_model(watched)
-    dropped(watched, field, ("notes.xml", b"no model"))
-    problem.filter(has_text="notes.xml").wait_for()
+    markup = "<img src=x onerror=alert(1)>.xml"
+    dropped(watched, field, (markup, b"no model"))
+    problem.filter(has_text=markup).wait_for()
+    assert page.locator("img").count() == 0
     assert field.input_value() == ""
     dropped(watched, field, ("pair.xml", ARM.encode()))
     page.get_by_text("pair.xml is uploaded").wait_for()

@@ -40,6 +40,46 @@ def test_without_graphics_the_pictures_of_the_result_are_shown(playwright, serve
     assert watched.errors == []
 
 
+def test_a_volume_that_is_too_large_is_reduced_with_a_notice(watched: Watched, client: ws.Client) -> None:
+    """A voxel that is clicked is of those that are shown, with the values of the file's."""
+    job = client.submit(SMALL | {"voxel_size_m": 0.006}).wait()
+    opened(watched, f"/job/{job.id}", volumes={"volume": {"style": "points"}})
+    notice = watched.page.locator(".overlay .notice")
+    notice.get_by_text("voxels of 0.006 m are shown in voxels 2 times as long, of 0.012 m").wait_for()
+    volume = job.result().volume
+    assert volume is not None and np.prod(volume.shape) > 256**3
+    cells = np.stack(np.unravel_index(volume.voxels.cells, volume.shape), axis=1) + volume.first_voxel
+    values = volume.voxels.statistics["maximum"]["manipulability"]
+    center = (cells[0] + 0.5) * 0.006
+    for name, value in zip("xyz", center, strict=True):
+        watched.page.get_by_label(f"{name} of a place [m]").fill(f"{value:.4f}")
+    watched.page.get_by_role("button", name="Look there").click()
+    shown = watched.page.locator("[data-voxel] [data-value='maximum:manipulability']")
+    shown.wait_for()
+    within = (cells // 2 == cells[0] // 2).all(axis=1)
+    assert float(shown.get_attribute("data-exact")) == values[within].max()
+
+
+GRAPHICS = """() => document.querySelector("#wsrender").shadowRoot.querySelector(".stage-host canvas")
+  .getContext("webgl2").getExtension("WEBGL_lose_context")"""
+
+
+def test_graphics_that_are_taken_away_leave_the_pictures_until_they_come_back(watched: Watched, finished: str) -> None:
+    opened(watched, f"/job/{finished}")
+    page, before = watched.page, pixels(watched)
+    graphics = page.evaluate_handle(GRAPHICS)
+    graphics.evaluate("each => each.loseContext()")
+    shown = page.get_by_role("region", name="Pictures of the result")
+    shown.get_by_text("The browser has taken the 3-D graphics away.").wait_for()
+    until(lambda: shown.locator("img").count() >= 3)
+    for image in shown.locator("img").all():
+        until(lambda image=image: image.evaluate("each => each.complete && each.naturalWidth") > 100)
+    page.locator(".stage-host").evaluate("each => { delete each.dataset.drawn; }")
+    graphics.evaluate("each => each.restoreContext()")
+    shown.wait_for(state="detached")
+    assert differing(before, pixels(watched)) < 100
+
+
 def test_a_key_is_entered_once_and_kept_by_the_tab(chromium, tmp_path: Path) -> None:
     secret = "a/secret=of,ann-12345"
     (tmp_path / "keys").write_text(f"{secret} ann read,submit\n")
