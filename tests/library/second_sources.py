@@ -13,7 +13,7 @@ import pytest
 
 from tests.library.published_chains import CHAINS
 from tests.library.published_screws import SCREWS
-from tests.library.published_tables import SAWYER, TABLES
+from tests.library.published_tables import PR2, SAWYER, TABLES
 from tests.robots.model_packages import folders
 
 Poses = Callable[[np.ndarray], np.ndarray]
@@ -180,6 +180,8 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "kinova_j2s7s300": partial(ssik, "kinova.j2s7s300"),
     "kinova_j2s6s200": partial(ssik, "kinova.j2s6s300", tool=TO_J2S6S200),
     "sawyer": partial(between, np.eye(4), SAWYER.poses, turned_about_z(np.radians(80)) @ along_z(0.00075)),
+    "pr2_left_arm": partial(between, aside(0.188), PR2.poses, along_z(0.18) @ X_OUT_OF_Z),
+    "pr2_right_arm": partial(between, aside(-0.188), PR2.poses, along_z(0.18) @ X_OUT_OF_Z),
     "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
     "unitree_z1": partial(ssik, "unitree.z1"),
     "viperx300s": partial(ssik, "trossen.viperx300s"),

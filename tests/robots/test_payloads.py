@@ -35,6 +35,8 @@ LISTED = {
     "lite6": (None, 0.44),
     "pincherx100": (0.05, 0.3),
     "pincherx150": (0.05, 0.45),
+    "pr2_left_arm": (1.8, None),
+    "pr2_right_arm": (1.8, None),
     "reactorx150": (0.1, 0.45),
     "reactorx200": (0.15, 0.55),
     "sawyer": (4, 1.26),

@@ -36,6 +36,8 @@ MESHES = {
 
 # Of URDFs: the folder of their package, the file, the links at the ends of the chain.
 URDFS = {
+    "pr2_left_arm": ("robots", "pr2_description/urdf/pr2.urdf", "torso_lift_link", "l_gripper_tool_frame"),
+    "pr2_right_arm": ("robots", "pr2_description/urdf/pr2.urdf", "torso_lift_link", "r_gripper_tool_frame"),
     "so100": ("robots", "so_arm_description/urdf/so100.urdf", "base", "gripper"),
     "so101": ("robots", "so_arm_description/urdf/so101.urdf", "base_link", "gripper_link"),
     "ur3": ("robots", "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
