@@ -139,4 +139,6 @@ CHAINS: dict[str, PublishedChain] = {
             ((0, -0.0611, 0.0181), (0.0172091, -0.0172091, 0.706897, 0.706897)),
         )
     ),
+    "unitree_g1_left_arm": _g1(1),
+    "unitree_g1_right_arm": _g1(-1),
 }

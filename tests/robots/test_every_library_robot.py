@@ -13,6 +13,7 @@ from tests.library.second_sources import SECOND_SOURCES
 from wsrender.robots import library
 
 ROBOTS = {robot.name: robot for robot in library.describe()}
+QUATERNIONS_OF_SIX_DIGITS = ("unitree_g1_left_arm", "unitree_g1_right_arm")  # of the second source
 PRODUCTS = [name for name, robot in ROBOTS.items() if robot.second_source]
 
 
@@ -73,7 +74,9 @@ def test_kinematics_are_those_of_the_second_source(name):
     lower = np.where(np.isfinite(chain.lower_limits), chain.lower_limits, -np.pi)
     upper = np.where(np.isfinite(chain.upper_limits), chain.upper_limits, np.pi)
     q = np.random.default_rng(20261126).uniform(lower, upper, (100, chain.n))
-    np.testing.assert_allclose(chain.poses(q), theirs(q), rtol=0, atol=1e-6)
+    away = np.abs(chain.poses(q) - theirs(q))
+    assert away[:, :3, 3].max() < 1e-6
+    assert away[:, :3, :3].max() < (2e-6 if name in QUATERNIONS_OF_SIX_DIGITS else 1e-6)
 
 
 @pytest.mark.parametrize("name", ROBOTS)

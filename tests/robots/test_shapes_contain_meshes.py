@@ -40,6 +40,8 @@ URDFS = {
     "pr2_right_arm": ("robots", "pr2_description/urdf/pr2.urdf", "torso_lift_link", "r_gripper_tool_frame"),
     "so100": ("robots", "so_arm_description/urdf/so100.urdf", "base", "gripper"),
     "so101": ("robots", "so_arm_description/urdf/so101.urdf", "base_link", "gripper_link"),
+    "unitree_g1_left_arm": ("robots", G1, "torso_link", "left_wrist_yaw_link"),
+    "unitree_g1_right_arm": ("robots", G1, "torso_link", "right_wrist_yaw_link"),
     "ur3": ("robots", "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
     "ur5": ("robots", "ur_description/urdf/ur5_robot.urdf", "base_link", "tool0"),
     "ur10": ("robots", "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
