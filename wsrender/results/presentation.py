@@ -21,6 +21,7 @@ from wsrender.short_repr import short_repr
 
 _REGISTRY = "wsrender.analyses.registry:presentations"  # of the layer above, which is read by name alone
 EXTENSIONS = "wsrender.pictures"  # entry points, loaded when the table is first read
+REACHABLE = "reachable"  # what most headlines measure
 NAMED = ("tables", "volumes", "meshes")
 PARTS = ("samples", "volume", "skeleton", *NAMED)
 """What a result may hold of what pictures show: the fields of `ResultPlots`; of those NAMED several by name."""
@@ -87,7 +88,7 @@ class Presentation:
     facts: Callable[[Document], Iterator[tuple[str, str]]] = lambda document: iter(())
     title: Callable[[Document], list[str]] = lambda document: []
     sections: Callable[[Document], dict[str, Any]] = lambda document: {}
-    measured: str | Callable[[Document], str] = "reachable"
+    measured: str | Callable[[Document], str] = REACHABLE
     drawings: tuple[str, ...] = ()
     view: Function | None = None
     job: Callable[[Document], Any] = lambda document: document.get("job")

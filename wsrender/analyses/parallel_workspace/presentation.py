@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from wsrender.results.presentation import Picture, Presentation
+from wsrender.results.presentation import REACHABLE, Picture, Presentation
 
 _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 _MEASURED = {"dexterous": "dexterous", "total_orientation": "total-orientation"}
@@ -19,7 +19,7 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 def measured(document: Mapping[str, Any]) -> str:
     """Which workspace the headline measures."""
-    return _MEASURED.get(str(document.get("kind")), Presentation.measured)
+    return _MEASURED.get(str(document.get("kind")), REACHABLE)
 
 
 PRESENTATION = Presentation(

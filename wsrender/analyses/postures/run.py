@@ -93,7 +93,8 @@ class PosturesAnalysis(Analysis):
         """The poses; raises InputError for a table that cannot be read, and for targets that ask for several things."""
         job, chain, axis = self.job, self.robot.chain, self.job.free_axis or ""
         if job.targets is None:
-            listed = listed_targets(np.array(job.position_m), job.quat_wxyz and np.array(job.quat_wxyz))
+            quats = None if job.quat_wxyz is None else np.array(job.quat_wxyz)
+            listed = listed_targets(np.array(job.position_m), quats)
             return replace(listed, free_axis=np.full(len(listed), axis))
         found = checked_targets(job.targets, lambda position: chain.center, chain.reach)
         if axis and not found.oriented.all():

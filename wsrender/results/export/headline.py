@@ -6,7 +6,7 @@ from typing import Any
 
 from wsrender.indices.units import pretty_unit
 from wsrender.notices import Notice
-from wsrender.results.presentation import Presentation, presentation_of
+from wsrender.results.presentation import REACHABLE, presentation_of
 from wsrender.volume.measure import NOT_ASKED
 
 _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
@@ -25,11 +25,11 @@ def headline_lines(document: Mapping[str, Any]) -> list[str]:
         return []
     if not whose:
         return [f"{name}: {text}" for name, text in presentation.facts(document)]
-    together = whose != Presentation.measured
+    together = whose != REACHABLE
     robots = [robot for robot in document.get("robots") or () if robot.get("headline")]
     each = [robot for robot in robots if not together or robot["headline"]["value"] is not None]
     lines = [] if each and found["value"] is None else [headline_text(found, _free(document) or whose)]
-    own = [headline_text(robot["headline"], _free(robot) or Presentation.measured) for robot in each]
+    own = [headline_text(robot["headline"], _free(robot) or REACHABLE) for robot in each]
     return lines + [f"{robot.get('name')}: {text}" for robot, text in zip(each, own, strict=True)]
 
 
@@ -39,7 +39,7 @@ def _free(entries: Mapping[str, Any]) -> str:
     return "free" if "free" in (entries.get(f"{headline['quantity']}_{headline['unit']}") or {}) else ""
 
 
-def headline_text(headline: Mapping[str, Any], whose: str = "reachable") -> str:
+def headline_text(headline: Mapping[str, Any], whose: str = REACHABLE) -> str:
     """One headline: three digits at least, and as many decimals as the half width of its interval starts with.
 
     Where it has no value, ``no volume: <reason>``; where it was not asked for, ``no refined reachable volume: …``.
