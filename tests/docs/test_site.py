@@ -101,10 +101,11 @@ def test_names_of_functions_in_formulas_stand_apart(folder):
     assert re.search(r"<mn>338</mn>\s*<mspace[^>]*/><mi>arccos</mi>", page)
 
 
-# Elements of the article whose content is cut off at their side; on wide screens code that does not fit, too.
+# Elements of the article whose content is cut off, or goes beyond their side; on wide screens code must fit, too.
 CUT = """wide => [...document.querySelectorAll(".bd-article *")].filter(each => {
-  const hidden = ["hidden", "clip"].includes(getComputedStyle(each).overflowX) || (wide && each.tagName === "PRE");
-  return hidden && each.clientWidth > 1 && each.scrollWidth > each.clientWidth + 2;
+  const hidden = ["hidden", "clip"].includes(getComputedStyle(each).overflowX);
+  const fits = wide ? /^(H[1-6]|P|LI|DT|PRE)$/ : /^(H[1-6]|P|LI|DT)$/;
+  return (hidden || fits.test(each.tagName)) && each.clientWidth > 1 && each.scrollWidth > each.clientWidth + 2;
 }).map(each => each.outerHTML.slice(0, 80))"""
 
 
