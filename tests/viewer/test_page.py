@@ -550,7 +550,9 @@ def test_on_every_screen_all_is_within_reach(watched: Watched, finished: str, na
         )
         bar.first.wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= wide
-        for each in page.locator(".top a, .top button, .top select, .viewer .bar button").all():
+        if place == "/":
+            page.locator(f"tr[data-job='{finished}']").wait_for()
+        for each in page.locator(".top a, .top button, .top select, .viewer .bar button, .jobs .actions button").all():
             box = each.bounding_box()
             assert box["x"] >= 0 and box["x"] + box["width"] <= wide, (place, each.inner_text())
     opened(watched, f"/job/{finished}")

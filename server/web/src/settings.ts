@@ -54,6 +54,8 @@ export function volumeSettings(volume: Volume, manifest: Manifest): VolumeSettin
   };
 }
 
+const MANY_ARROWS = 3000; // behind so many nothing is seen
+
 /** How a view is shown first. */
 export function defaultSettings(manifest: Manifest): Settings {
   const mapped = manifest.mapping?.volumes;
@@ -61,7 +63,8 @@ export function defaultSettings(manifest: Manifest): Settings {
     ...volumeSettings(volume, manifest), visible: mapped ? Object.values(mapped).includes(volume.name) : i === 0,
     ...(volume.name === mapped?.master ? { style: "translucent" } : {}), ...(i === 0 ? {} : { cut: [] }),
   }]);
-  const covers = manifest.volumes.length ? [...manifest.meshes.filter((mesh) => mesh.role === "surface" || mesh.role === "refined"), ...manifest.points] : []; // hide the volume
+  const thicket = manifest.glyphs.filter((arrows) => arrows.origins.length / 3 > MANY_ARROWS);
+  const covers = manifest.volumes.length ? [...manifest.meshes.filter((mesh) => mesh.role === "surface" || mesh.role === "refined"), ...manifest.points, ...thicket] : []; // hide the volume
   const hidden = ["frames", ...covers.map((each) => each.name)].map((key): [string, Layer] => [key, { visible: false, opacity: 1 }]);
   return {
     theme: "system", camera: null, volumes: Object.fromEntries(volumes), slices: [], layers: Object.fromEntries(hidden), channels: {},

@@ -320,7 +320,7 @@ export class Stage {
       const scale = channel ? scaleOf(channel, whole, inner, first && this.isSeen(name) ? settings.range : null, settings.colors) : null;
       data.body.set(lattice, wanted, scale);
       if (this.manifest?.mapping?.volumes.slave === name) this.placeSlave(data.body, this.manifest.mapping);
-      if (this.isSeen(name) && scale && !data.body.isMapped) {
+      if (this.isSeen(name) && scale && !Object.values(this.manifest?.mapping?.volumes ?? {}).includes(name)) { // which are green and red
         first = false;
         addBar(scale);
       }

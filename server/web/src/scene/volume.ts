@@ -214,7 +214,6 @@ export class VolumeBody {
     this.mapped = other;
   }
 
-  get isMapped(): boolean { return this.mapped !== null; }
 
   get solid(): boolean { return this.settings.style !== "translucent" && this.settings.opacity >= 1; }
 
