@@ -5,10 +5,11 @@ import pytest
 from scipy import ndimage
 
 import wsrender as ws
-from tests.viewer.watched import Watched, differing, opened, pixels, spots, until
-from tests.viewer.written import HEIGHT, OFF, WIDTH, looking
+from tests.viewer.watched import JOB, Watched, differing, opened, pixels, relink, spots, until
+from tests.viewer.written import HEIGHT, OFF, WIDTH, decoded, looking
 from tests.viewer.written import pixels as places_of
 from wsrender.results.view import view_of
+from wsrender.results.view.interactive import Interactive
 
 ON = {"visible": True, "opacity": 1}
 LISTS = ("meshes", "points", "glyphs", "curves", "maps", "skeletons")
@@ -79,6 +80,59 @@ def test_a_planar_boundary_is_drawn_where_it_is(watched: Watched, client: ws.Cli
             line[row - 1 : row + 2, column - 1 : column + 2].any() for row, column in zip(rows, columns, strict=True)
         ]
         assert all(near) if drawn else not any(near), radius
+
+
+@pytest.fixture(scope="module")
+def converged(client) -> ws.client.Job:
+    """A job whose sampling converges."""
+    sampling = {"method": "converge", "index": "manipulability", "start": 3, "step": 1, "tolerance": 3e-3}
+    job = JOB | {"robot": {"library": "puma560"}, "sampling": sampling}
+    return client.submit(job).wait()
+
+
+def test_a_point_of_a_convergence_curve_shows_the_volume_of_its_samples(watched: Watched, converged) -> None:
+    """Computed by the engine, marked on the curve, kept by a link, and left again for that of the result."""
+    document = converged.result().document
+    grids = document["convergence"]
+    assert len(grids) >= 3
+    opened(watched, f"/job/{converged.id}")
+    page, live = watched.page, watched.page.locator("[data-live]")
+    over, steps = page.locator(".plot .u-over"), page.locator("label:has-text('Volume of') select")
+    page.locator("label:has-text('Plot') select").select_option(label="Convergence")
+    labels = ["the result", *(f"{each['samples']:,} samples" for each in grids)]
+    assert steps.locator("option").all_inner_texts() == labels
+
+    def marked() -> list[float]:
+        """Where the curve is marked, as shares of its width."""
+        page.wait_for_timeout(200)
+        red, green, blue = np.moveaxis(decoded(over.screenshot()), 2, 0)
+        return (np.flatnonzero(((red > 150) & (green < 140) & (blue < 90)).mean(axis=0) > 0.6) / red.shape[1]).tolist()
+
+    engine = Interactive(document["job"], [ws.load_robot("puma560")])
+    asked = {"ask": "volume", "index": "manipulability", "statistic": "maximum", "voxel_size_m": 0.1}
+    over.scroll_into_view_if_needed()
+    assert marked() == []
+    places, volumes = [], set()
+    for share, grid in ((0.01, grids[0]), (0.99, grids[-1])):
+        over.click(position={"x": share * over.bounding_box()["width"], "y": 20})
+        expected = engine.answer(asked | {"samples": grid["samples"]})[0]["volume_m3"]
+        until(lambda expected=expected: float(live.get_attribute("data-volume") or 0) == pytest.approx(expected))
+        assert steps.input_value() == str(grid["samples"])
+        page.get_by_label(f"Show Of {grid['samples']:,} samples", exact=True).wait_for()
+        assert not page.get_by_label("Show Volume", exact=True).is_checked()
+        places.append(np.mean(marked()))
+        volumes.add(expected)
+    assert len(volumes) == 2 and places[0] < places[1]
+    assert page.locator("button", has_text="Submit as a job").is_disabled()  # nothing was dragged
+    seen = pixels(watched)
+    relink(watched)
+    page.locator("label:has-text('Plot') select").select_option(label="Convergence")
+    until(lambda: steps.input_value() == str(grids[-1]["samples"]))
+    page.get_by_label(f"Show Of {grids[-1]['samples']:,} samples", exact=True).wait_for()
+    assert differing(seen, pixels(watched)) < 100
+    steps.select_option("")
+    until(lambda: page.get_by_label("Show Volume", exact=True).is_checked())
+    assert marked() == []
 
 
 def test_a_point_of_the_curve_over_scales_is_the_scale_of_the_mapping(watched: Watched, client: ws.Client) -> None:
