@@ -53,3 +53,15 @@ class Bodies:
         displacement = chain.joint_scale * q[:, chain.joint_source] + chain.joint_offset
         qpos[:, addresses] = self.model.qpos0[addresses] + displacement[:, moves]
         return qpos
+
+    def overlapping(self, q: np.ndarray) -> np.ndarray:
+        """Whether two shapes of ``pairs`` overlap at ``q`` (N, n) [rad or m], (N,) bool; by MuJoCo's own pipeline."""
+        data, found = mujoco.MjData(self.model), np.zeros(len(q), bool)
+        geoms = [shape.geom for shape in self.shapes]
+        own = {frozenset((geoms[a], geoms[b])) for a, b in self.pairs}
+        for i, qpos in enumerate(self.qpos(q)):
+            data.qpos[:] = qpos
+            mujoco.mj_kinematics(self.model, data)
+            mujoco.mj_collision(self.model, data)
+            found[i] = any(contact.dist < 0 and frozenset(contact.geom.tolist()) in own for contact in data.contact)
+        return found

@@ -51,7 +51,18 @@ class ShownArm:
 
 def shown_alone(robot: Arm) -> ShownArm:
     """A robot as it stands, in its `stance`."""
-    return ShownArm(robot, robot.name, robot.chain.T_world_base, stance(robot.chain))
+    return ShownArm(robot, robot.name, robot.chain.T_world_base, _stance(robot))
+
+
+def _stance(robot: Arm) -> np.ndarray:
+    """Its `stance`, in which its shapes are apart where they can be read."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said when the robot was loaded
+        try:
+            bodies = robot.bodies
+        except WsrenderError:
+            return stance(robot.chain)
+    return stance(robot.chain, lambda q: not bodies.overlapping(q[None])[0])
 
 
 def add_robot(blobs: Blobs, number: int, arm: ShownArm, omitted: list[str]) -> ViewRobot:
@@ -203,7 +214,7 @@ def _stood(
         raise WsrenderError("its model is another than that of the result")
     where = robot.chain.T_world_base if base is None else base
     said, configurations = next(_configurations(robot, tables), ("", None))
-    home = stance(robot.chain) if configurations is None else configurations[0]
+    home = _stance(robot) if configurations is None else configurations[0]
     for joint, value in held.items() if configurations is None else ():
         home[list(robot.joint_names).index(joint)] = value
     return ShownArm(robot, name or robot.name, where, home, configurations, said)

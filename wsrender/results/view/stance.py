@@ -1,5 +1,7 @@
 """The configuration in which a robot is shown before anybody has chosen one."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from wsrender.robots.chain import Chain
@@ -19,11 +21,12 @@ DOWN, HIGH = 0.1, 0.3  # a tool that looks down instead of sideways; an elbow th
 MIDDLE = 0.03  # each joint at the end of its range instead of the middle
 
 
-def stance(robot: Kinematics) -> np.ndarray:
+def stance(robot: Kinematics, free: Callable[[np.ndarray], bool] = lambda q: True) -> np.ndarray:
     """A posture that looks like an arm, (n,): bent, above its base, its tip ahead; the best of a coordinate search.
 
-    Distances of its joints' origins alone decide, not its bodies. The same for the same robot, within its limits; of
-    one whose links are not known a quarter into the ranges.
+    Distances of its joints' origins decide; ``free`` says of which (n,) its bodies are apart: where none that was found
+    is, the middle of the ranges, or the best all the same. The same for the same robot, within its limits; of one whose
+    links are not known a quarter into the ranges.
     """
     chain = robot.geometry
     if chain is None:
@@ -38,7 +41,8 @@ def stance(robot: Kinematics) -> np.ndarray:
             tried[:, :, joint] = each
             best = _costs(chain, tried.reshape(-1, chain.n)).reshape(len(q), -1).argmin(axis=1)
             q[:, joint] = each[best]
-    return q[_costs(chain, q).argmin()]
+    best = q[_costs(chain, q).argsort(kind="stable")]
+    return next((each for each in (*best, chain.within(0.5)) if free(each)), best[0])
 
 
 def _range(chain: Chain) -> tuple[np.ndarray, np.ndarray]:
