@@ -107,7 +107,7 @@ def _settle(
     for k, each in enumerate(postures):
         q[k][at[left[some]]] = each.q[left[some], chosen[some, k]]
     label[at[left[some]]] = REACHABLE
-    every = np.asarray(np.array([each.complete for each in postures]).reshape(-1, len(at)).all(axis=0))
+    every = np.all(np.array([each.complete for each in postures], bool).reshape(-1, len(at)), axis=0)
     doubtful = left[~some & ~(exhausted & every[left])]
     label[at[doubtful]] = UNDECIDED
 

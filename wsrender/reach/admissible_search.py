@@ -176,7 +176,7 @@ class AdmissibleSearch:
         tries = self.solver.tries(q.reshape(len(targets), -1), position[targets], _some(orientation, targets))
         # From what is no posture of a pose that others are known of, tries end beside one of these, off the pose: there
         # constraints may admit what they reject of the posture.
-        known = np.asarray((none | alone).all(axis=1))
+        known = np.all(none | alone, axis=1)
         tries.reached[(none & known[:, None]).ravel()] = False
         found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
