@@ -13,7 +13,7 @@ import wsrender as ws
 from tests.mechanisms.mechanisms import mechanism
 from tests.mechanisms.serial_legs import mjcf
 from tests.mechanisms.test_bodies import at, random_poses
-from wsrender.errors import DocumentError, InputError
+from wsrender.errors import DocumentError, InputError, ResourceError
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import jacobians
 from wsrender.mechanisms.keeping_apart import stand
@@ -349,6 +349,14 @@ def test_what_serial_legs_cannot_be_asked():
             ws.parallel_workspace({"legs": legs, "bodies": bodies})
         ((field, text),) = refused.value.problems
         assert field == "mechanism.bodies.link_radius_m" and message in text
+
+
+def test_too_many_pairs_are_refused(monkeypatch):
+    """Before they are listed: twelve legs of a thousand shapes would be 66 million."""
+    monkeypatch.setattr("wsrender.mechanisms.leg_bodies.MOST_PAIRS", 9)
+    with pytest.raises(ResourceError, match="would keep 10 pairs of shapes of leg 2 apart, more than 9") as told:
+        mechanism({"legs": [bar(BASES[0], [0, 0]), bar(BASES[1], [0.1, 0])], "bodies": {}})
+    assert told.value.field == "mechanism.bodies"
 
 
 def test_legs_that_share_a_joint_may_touch_next_to_it():

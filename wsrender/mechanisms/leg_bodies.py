@@ -13,7 +13,7 @@ import numpy as np
 
 from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.arm import dotted
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ResourceError
 from wsrender.mechanisms.serial_leg import NumericLeg
 from wsrender.robot.collisions import solid_of
 from wsrender.robot.surroundings import Standing
@@ -21,6 +21,7 @@ from wsrender.robots.bodies import Bodies
 from wsrender.robots.pairs import apart_from_child, meet
 
 SAME_M = 1e-9  # [m]: joints that are no farther apart are one
+MOST_PAIRS = 5000  # of a leg's shapes with others: each is asked by itself
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,8 @@ def leg_bodies(
 ) -> LegBodies:
     """The shapes of a leg, beside ``closed``, the joints of legs in closed form, and serial ones.
 
-    Raises InputError for a robot without shapes that may collide, ModelError where one cannot be had.
+    Raises InputError for a robot without shapes that may collide, ModelError where one cannot be had, ResourceError for
+    more pairs than are asked.
     """
     robot, field = leg.robot, dotted(("mechanism", "legs", leg.number), "robot")
     if robot.definition or not any(shape.frame != BASE for shape in robot.bodies.shapes):
@@ -75,6 +77,10 @@ def leg_bodies(
         raise InputError(field, f"must have shapes that may collide where the mechanism has bodies; {remedy}")
     bodies, chain = robot.bodies, robot.bodies.chain
     shapes, name = bodies.shapes, f"leg {leg.number + 1}"
+    others = len(platform) + len(around) + len(closed) + sum(len(each.solids) for each in earlier)
+    if (count := len(bodies.pairs) + len(bodies.around) + len(shapes) * others) > MOST_PAIRS:
+        message = f"would keep {count} pairs of shapes of {name} apart, more than {MOST_PAIRS}: give fewer shapes"
+        raise ResourceError("mechanism.bodies", message)
     moving = np.array([shape.frame for shape in shapes])
     geoms = [shape.geom for shape in shapes]
     T_first = chain.T_world_base @ chain.T_joint[0]
