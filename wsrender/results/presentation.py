@@ -29,6 +29,7 @@ PARTS = ("samples", "volume", "skeleton", *NAMED)
 Function = str | Callable[..., Any]
 """A function, or ``"module:name"`` of one that is imported when it is needed."""
 Document = Mapping[str, Any]
+REACHABLE = "reachable"  # what a headline measures unless an analysis says otherwise
 
 
 @keywords
