@@ -5,6 +5,8 @@ import pytest
 from scipy import ndimage
 
 import wsrender as ws
+from tests.contracts.conftest import result_of
+from tests.golden.files import golden_names
 from tests.viewer.watched import JOB, Watched, differing, opened, pixels, relink, spots, until
 from tests.viewer.written import HEIGHT, OFF, WIDTH, decoded, looking
 from tests.viewer.written import pixels as places_of
@@ -13,6 +15,35 @@ from wsrender.results.view.interactive import Interactive
 
 ON = {"visible": True, "opacity": 1}
 LISTS = ("meshes", "points", "glyphs", "curves", "maps", "skeletons")
+
+
+@pytest.mark.parametrize("name", golden_names())
+def test_every_part_of_a_view_is_seen(views, name):
+    """Of each golden result: each volume, robot and layer alone changes the picture, and without them it is empty."""
+    view = view_of(result_of(name))
+    shown = view.manifest
+    layers = [f"robot:{k}" for k in range(len(shown["robots"]))] + [
+        each["name"] for key in LISTS for each in shown[key]
+    ]
+    volumes = [each["name"] for each in shown["volumes"]]
+    nothing = {"layers": dict.fromkeys([*layers, "axes", "scale_bar", "frames"], OFF)}
+    nothing["volumes"] = {volume: {"visible": False, "cut": []} for volume in volumes}
+    views.show(shown, dict(view.blobs), **nothing)
+    below = slice(90, None)  # colour bars
+    empty = views.picture()[below]
+    assert (empty == 255).all()
+    for layer in layers:
+        views.change(layers={layer: ON})
+        views.until("stage.info.idle")
+        seen = int((views.picture()[below] != empty).any(axis=2).sum())
+        assert seen > 12, (layer, seen)
+        views.change(layers={layer: OFF})
+    for volume in volumes:
+        views.change(volumes={volume: {"visible": True}})
+        seen = int((views.picture()[below] != empty).any(axis=2).sum())
+        assert seen > 30, (volume, seen)
+        views.change(volumes={volume: {"visible": False}})
+    assert views.told("problem") == []
 
 
 def near_segments(starts, ends):
