@@ -407,6 +407,7 @@ def test_a_link_to_two_results_restores_both_and_their_difference(
 ) -> None:
     opened(watched, f"/compare/{finished}/{narrower}")
     page, subtracted = watched.page, watched.page.get_by_text("the first minus the second")
+    assert [title.split()[0] for title in page.locator("h1").all_text_contents()] == [finished[:8], narrower[:8]]
     second = page.locator(".viewer").nth(1)
     page.get_by_role("button", name="Difference, on the left").click()
     subtracted.wait_for()

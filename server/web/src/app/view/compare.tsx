@@ -71,8 +71,8 @@ export function Compare({ api, first, second, view, other, theme }: { api: Api; 
         <span role="status" class="help">{said}</span>
       </div>
       <div class="both">
-        <Viewer source={sources[0]} theme={theme} view={view} panels={false} linkOf={linkOf} onModel={keep(0)} picture={(url) => pictureOf(api, first, url)} />
-        <Viewer source={sources[1]} theme={theme} view={other} panels={false} linkOf={linkOf} onModel={keep(1)} picture={(url) => pictureOf(api, second, url)} />
+        <Viewer source={sources[0]} named={first.slice(0, 8)} theme={theme} view={view} panels={false} linkOf={linkOf} onModel={keep(0)} picture={(url) => pictureOf(api, first, url)} />
+        <Viewer source={sources[1]} named={second.slice(0, 8)} theme={theme} view={other} panels={false} linkOf={linkOf} onModel={keep(1)} picture={(url) => pictureOf(api, second, url)} />
       </div>
     </>
   );

@@ -23,6 +23,7 @@ export interface ViewerProps {
   theme: Signal<Theme>;
   view?: string | undefined; // packed settings to begin with
   title?: string;
+  named?: string; // beside others, what it is called
   panels?: boolean;
   actions?: ComponentChildren;
   onView?(packed: string): void; // the settings changed
@@ -78,7 +79,7 @@ export function Viewer(props: ViewerProps) {
     <div class="viewer" ref={frame}>
       <div class="bar">
         <button aria-expanded={left} onClick={() => setLeft(!left)} disabled={!shown}>Look</button>
-        <h1 title={props.title ?? manifest?.title}>{props.title ?? manifest?.title ?? "…"}</h1>
+        <h1 title={props.title ?? manifest?.title}>{props.named && <span class="mono">{props.named} </span>}{props.title ?? manifest?.title ?? "…"}</h1>
         {first && <span class="help" title={first}>{first}</span>}
         <span class="space" />
         {props.actions}
