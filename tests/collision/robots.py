@@ -49,7 +49,7 @@ def collides(robot: ws.Robot, q: np.ndarray, pairs: np.ndarray | None = None) ->
     bodies = robot.bodies
     model, data = bodies.model, mujoco.MjData(bodies.model)
     model.geom_margin[:] = 0
-    # With its default, 1e-6, two cylinders that overlap by 59 µm have no contact (of unitree_g1_left_arm, one in 20,000).
+    # With its default, 1e-6, cylinders of unitree_g1_left_arm that overlap by 59 µm have no contact, at one of 20,000.
     model.opt.ccd_tolerance = 1e-9
     own = np.zeros((model.ngeom, model.ngeom), bool)
     for a, b in bodies.pairs if pairs is None else pairs:
