@@ -14,6 +14,8 @@ def test_fuzzing_finds_nothing(server, tmp_path, phase):
     command = [sys.executable, "-m", "schemathesis.cli", "run", f"{server.url}/openapi.json", "--checks", "all"]
     command += ["--phases", phase, "--max-time", str(SECONDS[phase]), "--max-response-time", "60"]
     command += ["--seed", "7", "--no-color"]
+    if phase == "stateful":  # which sends an idempotency key again with another body: that is refused
+        command += ["--exclude-checks", "positive_data_acceptance"]
     report = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240)
     assert report.returncode == 0, report.stdout[-6000:] + report.stderr[-2000:]
     assert f"✅ {phase.capitalize()}" in report.stdout, report.stdout[-2000:]
