@@ -230,7 +230,7 @@ def reachability(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``seed``: Seed of the starts.
+    ``seed``: Seed of all that is drawn, such as the starts of searches.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
@@ -363,7 +363,7 @@ def capability(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a direction that counts as reached [rad].
-    ``seed``: Seed of the starts.
+    ``seed``: Seed of all that is drawn, such as the starts of searches.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``voxel_size_m``: Edge of a voxel [m]; None: a twentieth of the cube root of the workspace's convex-hull volume.
@@ -559,7 +559,7 @@ def base_placement(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``seed``: Seed of the starts.
+    ``seed``: Seed of all that is drawn, such as the starts of searches.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
@@ -635,7 +635,7 @@ def inverse_reachability(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``seed``: Seed of the starts.
+    ``seed``: Seed of all that is drawn, such as the starts of searches.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
@@ -693,7 +693,7 @@ def two_arm_placement(
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
-    ``seed``: Seed of the starts.
+    ``seed``: Seed of all that is drawn, such as the starts of searches.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half

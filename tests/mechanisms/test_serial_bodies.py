@@ -278,6 +278,15 @@ def test_two_library_arms_with_a_tray():
     assert 5 < free.sum() < len(poses) - 5
 
 
+def test_a_posture_that_stands_for_many_is_not_all_of_them():
+    """Of a Puma's wrist that is straight, axes 4 and 6 in one line, only their sum is told: a pose is not complete."""
+    leg = mechanism(two_arms(bodies={"platform": {"items": [TRAY]}})).numeric[0]
+    q = np.array([[0.2, -0.8, 0.5, 0.3, 0.7, -0.4], [0.2, -0.8, 0.5, 0.3, 0.0, -0.4]])
+    poses = leg.chain.poses(q) @ np.linalg.inv(leg.T_platform_tip)
+    known = leg.postures(poses, device="cpu")
+    assert known.there.any(axis=1).all() and known.complete.tolist() == [True, False]
+
+
 def test_indices_and_pictures_are_of_postures_that_keep_apart():
     """A ball around the first leg's elbow leaves the other side: its Jacobian, and its sticks."""
     pose, fields = np.eye(4), {"region": {"lower_m": [-0.05, -0.05, -1], "upper_m": [0.05, 0.05, 1]}}

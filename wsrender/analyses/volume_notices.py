@@ -18,13 +18,18 @@ def few_samples(holes: float | None, unseen: float) -> Iterator[Notice]:
     """That samples leave ``holes``, a share of the occupied voxels; None: unknown, then by the share ``unseen``."""
     remedy = _REMEDY
     if holes is not None and holes > MOST_HOLES:
-        found = f"for every 100 voxels that hold a sample about {100 * holes:.2g} are empty though wholly reachable"
+        found = f"for every 100 voxels that hold a sample about {_count(100 * holes)} are empty though wholly reachable"
         remedy += _SELDOM
     elif holes is None and unseen > MOST_UNSEEN:
-        found = f"for every 100 voxels that hold a sample more samples would find at least {100 * unseen:.0f}"
+        found = f"for every 100 voxels that hold a sample more samples would find at least {_count(100 * unseen)}"
     else:
         return
     yield Notice("few_samples", f"too few samples for voxels of this size: {found}", remedy, "voxel_size_m")
+
+
+def _count(number: float) -> str:
+    """Two digits, written out: 0.52, 69, 291."""
+    return f"{number:.2g}" if number < 10 else f"{number:.0f}"
 
 
 def tolerance_not_met(measure: Mapping[str, Any] | None) -> Iterator[Notice]:

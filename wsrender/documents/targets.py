@@ -35,7 +35,7 @@ class Deciding(Document):
     angle_tolerance_rad: AngleTolerance = 1e-5
     """Largest angle to a target's orientation that counts as reached [rad]."""
     seed: Seed = 0
-    """Seed of the starts."""
+    """Seed of all that is drawn, such as the starts of searches."""
     precision: Precision = "float64"
     """Floating-point type of the kernels."""
     device: Device = "auto"

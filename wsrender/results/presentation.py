@@ -21,7 +21,6 @@ from wsrender.short_repr import short_repr
 
 _REGISTRY = "wsrender.analyses.registry:presentations"  # of the layer above, which is read by name alone
 EXTENSIONS = "wsrender.pictures"  # entry points, loaded when the table is first read
-REACHABLE = "reachable"  # what most headlines measure
 NAMED = ("tables", "volumes", "meshes")
 PARTS = ("samples", "volume", "skeleton", *NAMED)
 """What a result may hold of what pictures show: the fields of `ResultPlots`; of those NAMED several by name."""

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.reach.test_postures import GENERAL, drawn
 from tests.run.journeys import from_the_command_line
+from wsrender.analyses.cost import LISTED_BYTES, LISTED_MEMORY
 from wsrender.run import execute, merge, plan, run_shard
 
 FLOOR = {"items": [{"shape": "half_space", "name": "floor"}]}
@@ -232,3 +233,15 @@ def test_a_table_in_millimetres_is_told(tmp_path):
     path = str(written(tmp_path, ["400,200,300", "500,200,300"], "x_m,y_m,z_m"))
     with pytest.raises(ws.InputError, match=r"targets.length_unit_m.*millimetres\?"):
         plan({"analysis": "postures", "robot": "ur5e", "targets": {"path": path}})
+
+
+def test_a_table_is_not_counted_as_a_list(tmp_path):
+    """What a document does not list is no part of its file, nor of memory as objects."""
+    rows = [f"0.4,{0.001 * k:.3f},0.3,0,1,0,0" for k in range(200)]
+    job = {"analysis": "postures", "robot": "ur5e", "device": "cpu"}
+    table = plan(job | {"targets": {"path": str(written(tmp_path, rows, "x_m,y_m,z_m,qw,qx,qy,qz"))}}).cost
+    points = [[0.4, 0.001 * k, 0.3] for k in range(200)]
+    listed = plan(job | {"position_m": points, "quat_wxyz": [0, 1, 0, 0]}).cost
+    assert listed.file_bytes - table.file_bytes == pytest.approx(7 * 200 * LISTED_BYTES)
+    assert listed.memory_bytes - table.memory_bytes == pytest.approx(7 * 200 * LISTED_MEMORY)
+    assert (table.samples, table.seconds) == (listed.samples, pytest.approx(listed.seconds, abs=0.01))
