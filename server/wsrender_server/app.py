@@ -136,11 +136,11 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
         if isinstance(route, APIRoute)
     ]
     answer_errors(app)
-    app.add_middleware(BodyLayer, timeout_s=settings.read_timeout_s)
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
     app.add_middleware(HostLayer, settings=settings)
     app.add_middleware(RequestLayer, metrics=parts.metrics, settings=settings)
+    app.add_middleware(BodyLayer, settings=settings)
     document = cache(lambda keys_needed: openapi_document(app, keys_needed))
     app.openapi = lambda: document(authenticator.required)
     return app

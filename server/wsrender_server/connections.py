@@ -2,9 +2,12 @@
 
 import asyncio
 from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
 from time import monotonic
 from typing import Any
 
+from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.auto import AutoWebSocketsProtocol
@@ -125,24 +128,32 @@ def _host(client: tuple[str, int] | None) -> str:
 
 
 class BodyLayer:
-    """Around every route: a body that does not come in time is answered with 408."""
+    """Around all other layers: a body that does not come in time is answered with 408, and no answer comes before its body.
 
-    def __init__(self, app: ASGIApp, timeout_s: float):
+    What answers unread, a refusal mostly, has the body read for it: proxies written in Go (Caddy) break off an answer
+    that overtakes the request's body. A client that waits to be asked (``Expect: 100-continue``) is not asked for it.
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings):
         self.app = app
-        self._timeout_s = timeout_s
+        self._timeout_s = settings.read_timeout_s
+        self._most_discarded = settings.max_upload_bytes
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request (ASGI)."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
+        headers = Headers(scope=scope)
         ends: float | None = None  # counted from when somebody asks: a server may be slow to come to it
-        complete = False
+        complete = headers.get("content-length", "0") == "0" and "transfer-encoding" not in headers
+        waits = headers.get("expect", "").lower() == "100-continue"
 
         async def receive_in_time() -> Message:
-            nonlocal ends, complete
+            nonlocal ends, complete, waits
             if complete:
                 return await receive()
+            waits = False
             ends = monotonic() + self._timeout_s if ends is None else ends
             try:
                 async with asyncio.timeout(ends - monotonic()):
@@ -153,4 +164,16 @@ class BodyLayer:
             complete = not message.get("more_body", False)
             return message
 
-        await self.app(scope, receive_in_time, send)
+        async def send_after_body(message: Message) -> None:
+            if message["type"] == "http.response.start" and not (complete or waits):
+                await self._discard(receive_in_time, lambda: complete)
+            await send(message)
+
+        await self.app(scope, receive_in_time, send_after_body)
+
+    async def _discard(self, receive: Receive, complete: Callable[[], bool]) -> None:
+        """Read what is left of a body, as much as any may have; one that is too slow or too long is left alone."""
+        discarded = 0
+        with suppress(HttpProblem):
+            while not complete() and discarded <= self._most_discarded:
+                discarded += len((await receive()).get("body", b""))

@@ -1,4 +1,4 @@
-"""The outermost layer around every request: its id, limit, log line and metrics, and the last answer to a fault."""
+"""The layer around every request: its id, limit, log line and metrics, and the last answer to a fault."""
 
 import re
 import time

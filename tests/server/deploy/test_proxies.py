@@ -136,3 +136,16 @@ def test_half_requests_end(base, data):
         client.sendall(data)
         said = client.recv(1 << 16)
     assert said == b"" or re.match(rb"HTTP/1.1 (408|504) ", said)
+
+
+def test_a_refusal_waits_for_the_body(server):
+    """Caddy breaks off an answer, six in 3,000, that comes while it still sends the body on."""
+    host, port = server.url.removeprefix("http://").split(":")
+    with socket.create_connection((host, int(port)), timeout=30) as client:
+        client.sendall(HEAD + b"Origin: http://evil.example.org\r\nContent-Length: 2\r\n\r\n{")
+        client.settimeout(0.5)
+        with pytest.raises(TimeoutError):
+            client.recv(1)
+        client.settimeout(30)
+        client.sendall(b"}")
+        assert client.recv(1 << 16).startswith(b"HTTP/1.1 403 ")

@@ -1,4 +1,4 @@
-"""The outermost layer around requests."""
+"""The layers around every request."""
 
 import asyncio
 
@@ -11,6 +11,7 @@ from wsrender_server.requests import RequestLayer
 from wsrender_server.settings import Settings
 
 SCOPE = {"type": "http", "method": "GET", "path": "/v1/jobs/x/events", "headers": []}
+LENGTH = [(b"content-length", b"2")]
 
 
 def logged(fault: BaseException, *, answering: bool) -> tuple[list[str], list[int]]:
@@ -62,5 +63,51 @@ def test_a_server_that_is_slow_to_read_refuses_no_body_for_that():
     async def receive():
         return {"type": "http.request", "body": b"{}"}
 
-    asyncio.run(BodyLayer(app, 0.01)(dict(SCOPE), receive, None))
+    asyncio.run(BodyLayer(app, Settings(read_timeout_s=0.01))(SCOPE | {"headers": LENGTH}, receive, None))
     assert read == [{"type": "http.request", "body": b"{}"}]
+
+
+CHUNKED = [(b"transfer-encoding", b"chunked")]
+WAITING = [*LENGTH, (b"expect", b"100-Continue")]
+
+
+def order_of(headers, chunks, *, asks=False, seconds=0.0):
+    """What goes to and fro where an application answers, after asking for the body once or without asking."""
+    happened, left = [], list(chunks)
+
+    async def app(scope, receive, send):
+        if asks:
+            await receive()
+        await send({"type": "http.response.start", "status": 403, "headers": []})
+        await send({"type": "http.response.body", "body": b"no"})
+
+    async def receive():
+        await asyncio.sleep(seconds)
+        happened.append("asked")
+        body = left.pop(0)
+        return {"type": "http.request", "body": body, "more_body": bool(left)}
+
+    async def send(message):
+        happened.append(message["type"].rpartition(".")[2])
+
+    settings = Settings(read_timeout_s=0.05, max_upload_bytes=4)
+    asyncio.run(BodyLayer(app, settings)(SCOPE | {"headers": headers}, receive, send))
+    return happened
+
+
+@pytest.mark.parametrize(
+    ("headers", "chunks", "options", "asked"),
+    [
+        (LENGTH, [b"{", b"}"], {}, 2),
+        (CHUNKED, [b"{", b"}"], {}, 2),
+        (LENGTH, [b"{", b"}"], {"asks": True}, 2),
+        ([], [b""], {}, 0),  # no body
+        ([(b"content-length", b"0")], [b""], {}, 0),
+        (LENGTH, [b"{}"], {"seconds": 1}, 0),  # too slow
+        (CHUNKED, [b"12"] * 9, {}, 3),  # too long
+        (WAITING, [b"{}"], {}, 0),
+        (WAITING, [b"{", b"}"], {"asks": True}, 2),
+    ],
+)
+def test_an_answer_comes_after_the_body(headers, chunks, options, asked):
+    assert order_of(headers, chunks, **options) == ["asked"] * asked + ["start", "body"]
