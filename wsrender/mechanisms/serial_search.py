@@ -19,6 +19,7 @@ from wsrender.mechanisms.mechanism import Mechanism, mechanism_of
 from wsrender.mechanisms.membership import in_base_frame, poses_labelled
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robot import Robot
+from wsrender.robots.frames import inverse_of_rigid
 from wsrender.robots.reachable_box import reachable_box
 
 SETTLED = 1e-5  # of the size: a cell that moves the platform by less is not cut any more
@@ -78,10 +79,10 @@ class SerialSearch:
         before, after = np.split(q, [len(self.before)], axis=1)
         poses = np.broadcast_to(np.eye(4), (len(q), 4, 4)).copy()
         poses[:, :3, :3], poses[:, :3, 3] = rotations, positions
-        carried = _inverse(serial_transforms(self.before, before)) @ poses
+        carried = inverse_of_rigid(serial_transforms(self.before, before)) @ poses
         T_after = serial_transforms(self.after, after)
         if not self.mechanism.translational:
-            return carried[:, :3, 3], carried @ _inverse(T_after)
+            return carried[:, :3, 3], carried @ inverse_of_rigid(T_after)
         platform = np.broadcast_to(np.eye(4), carried.shape).copy()
         platform[:, :3, 3] = carried[:, :3, 3] - T_after[:, :3, 3]
         return carried[:, :3, 3], platform
@@ -224,14 +225,6 @@ def serial_transforms(joints: tuple[SerialJoint, ...], q: np.ndarray) -> np.ndar
             step[:, :3, 3] += value[:, None] * axis
         T = T @ step
     return T
-
-
-def _inverse(T: np.ndarray) -> np.ndarray:
-    """Of frames (N, 4, 4)."""
-    inverse = np.broadcast_to(np.eye(4), T.shape).copy()
-    inverse[:, :3, :3] = np.swapaxes(T[:, :3, :3], 1, 2)
-    inverse[:, :3, 3] = -np.einsum("nji,nj->ni", T[:, :3, :3], T[:, :3, 3])
-    return inverse
 
 
 def _slide(joint: SerialJoint) -> float:

@@ -27,6 +27,7 @@ from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver, parts_of
 from wsrender.robots.chain import Chain
+from wsrender.robots.frames import inverse_of_rigid
 from wsrender.robots.moving_base import MovingBase
 
 SEARCHED = 16  # tries from the nearest admitted samples, of a pose that may have other postures than those known
@@ -293,7 +294,7 @@ class Placements:
 
     def _seen_from(self, bases: np.ndarray) -> np.ndarray:
         """The motions (P, 4, 4) that move targets so that the solver's base is to them as each of ``bases``."""
-        return self.solver.whole.T_world_base @ np.linalg.inv(bases)
+        return self.solver.whole.T_world_base @ inverse_of_rigid(bases)
 
     def _asked_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
         """Positions (N, 3) and orientations, as `InverseSolver.solve` has them, of pairs by number (N,)."""

@@ -4,6 +4,7 @@ from functools import reduce
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
@@ -288,6 +289,35 @@ def test_a_whole_turn_goes_on_at_its_other_end():
         served[3] = 0
         bits = {"served": served, "undecided": np.zeros_like(served)}
         assert PlacementMap(parsed, np.ones(1), bits, None, None).best == best
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_best_placement_is_the_farthest_from_any_that_is_worse(seed):
+    """Distances in steps from all that serve less, and from places beyond a range, turns of yaw beside each other."""
+    parsed = parse_job(job("ur5e", RING[:1], over={"x_m": [0, 9, 1], "y_m": [0, 8, 1], "yaw_deg": [0, 360, 60]}))
+    sizes = np.array(parsed.over.shape)[[0, 1, 5]]
+    every = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, 3)
+    middle = np.random.default_rng(seed).integers(0, sizes)
+    away = np.abs(every - middle)
+    away[:, 2] = np.minimum(away[:, 2], sizes[2] - away[:, 2])
+    served = np.linalg.norm(away, axis=1) < (1.5, 2.4, 3.4)[seed % 3]
+    bits = {"served": served.astype(np.uint8)[:, None], "undecided": np.zeros((len(served), 1), np.uint8)}
+    around = np.stack(np.meshgrid(*(np.arange(-n, 2 * n) for n in sizes), indexing="ij"), axis=-1).reshape(-1, 3)
+    inside = ((around[:, :2] >= 0) & (around[:, :2] < sizes[:2])).all(axis=1)
+    worse = around[~inside | ~served[np.ravel_multi_index((around % sizes).T, sizes)]]
+    depth = np.zeros(len(served))
+    depth[served] = cKDTree(worse).query(every[served])[0]
+    best = PlacementMap(parsed, np.ones(1), bits, None, None).best
+    assert depth[best] == pytest.approx(depth.max()) and depth.max() >= 1
+
+
+def test_placements_are_decided_few_at_a_time_or_all_at_once(monkeypatch):
+    whole = plan(job("ur5e", RING, [DOWN] * 6, over=TURNED))
+    assert whole._together > whole.job.over.count / whole._alike
+    at_once = run_shard(whole, 0)["served"]
+    monkeypatch.setattr("wsrender.analyses.base_placement.run.PAIRS", 18)
+    assert whole._together == 3
+    assert np.array_equal(run_shard(whole, 0)["served"], at_once)
 
 
 def test_shards_hold_all_placements_that_are_alike():

@@ -153,7 +153,7 @@ class PlacementMap:
             rank = rank + np.unique(values, return_inverse=True)[1] * (rank.max() + 1)
         return rank
 
-    @property
+    @cached_property
     def best(self) -> int | None:
         """The best placement that is farthest, in steps, from those that are not; None: none serves any."""
         if not self.served.any():
@@ -163,9 +163,9 @@ class PlacementMap:
         for axis, (name, (before, _, after)) in enumerate(zip(self.over.ranges, frames, strict=True)):
             pads = [(before, after) if k == axis else (0, 0) for k in range(best.ndim)]
             best = np.pad(best, pads, mode="wrap") if _whole_turn(self.over, name) else np.pad(best, pads)
-        depth = np.ones(best.shape) if best.all() else distance_transform_edt(best)
+        depth = np.ones(best.shape) if best.all() else _depth(best)
         inner = tuple(slice(before, before + size) for before, size, _ in frames)
-        return int(np.argmax(np.asarray(depth)[inner]))
+        return int(np.argmax(depth[inner]))
 
     def best_cells(self, count: int) -> np.ndarray:
         """Numbers (B,) of the `best` placement, which there must be, and of others than which none beside is better."""
@@ -205,6 +205,15 @@ def framed(over: PlacementSpace) -> list[tuple[int, int, int]]:
     sizes = {name: over.shape[COORDINATES.index(name)] for name in over.ranges}
     beside = {name: size // 2 + 1 if _whole_turn(over, name) else 1 for name, size in sizes.items()}
     return [(beside[name], size, beside[name]) for name, size in sizes.items()]
+
+
+def _depth(best: np.ndarray) -> np.ndarray:
+    """How far cells are from those that are not ``best``, of which only those beside the best are looked at."""
+    ends = [np.flatnonzero(best.any(axis=tuple(k for k in range(best.ndim) if k != axis))) for axis in range(best.ndim)]
+    box = tuple(slice(max(0, at[0] - 1), at[-1] + 2) for at in ends)
+    depth = np.zeros(best.shape)
+    depth[box] = distance_transform_edt(best[box])
+    return depth
 
 
 def _whole_turn(over: PlacementSpace, name: str) -> bool:

@@ -55,7 +55,9 @@ from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.moving_base import MovingBase
 from wsrender.volume.table import Table
 
-PAIRS = 1 << 20  # of placements and targets that are decided together
+# Pairs of a placement and a target that are decided together, by closed forms alone of a GPU, whose launches count; by
+# others counted with the placements that are alike, so that they tell of their progress.
+PAIRS, PAIRS_ON_CUDA = 1 << 20, 1 << 22
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
 NEAR_BALLS_PER_S = 6e3  # the same under constraints, where searches in balls say which are out of reach
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
@@ -276,10 +278,17 @@ class BasePlacementAnalysis(Analysis):
         return self._bits_bytes + self.job.over.count * (8.0 * columns + 4)
 
     @property
+    def _together(self) -> int:
+        """Placements that are decided together, of those that are alike one."""
+        K, alone = len(self.targets), not (self._constrained or self.score)
+        pairs = (PAIRS_ON_CUDA if self.device.startswith("cuda") else PAIRS) if alone else PAIRS // self._alike
+        return max(1, pairs // K)
+
+    @property
     def _decided_bytes(self) -> float:
         """Of memory while placements are decided, as many as are at a time."""
         K, places = len(self.targets), self.job.over.count / self._alike
-        together = min(places, max(1, PAIRS // (K * self._alike)))
+        together = min(places, self._together)
         if self._constrained or self.score:
             solved = SEARCHED_BYTES * self._searches + self.program_bytes
         else:
@@ -315,7 +324,7 @@ class BasePlacementAnalysis(Analysis):
         """
         (first, count), K = self.shards[shard], len(self.targets)
         start, end = first // K, (first + count) // K
-        each = self._alike * max(1, PAIRS // (K * self._alike))
+        each = self._alike * self._together
         search, parts = self._placements(execution.threads), []
         others = [self._placements(execution.threads, score) for score in self.scores[1:]]
         for begin in range(start, end, each):
