@@ -31,6 +31,11 @@ Document = Mapping[str, Any]
 REACHABLE = "reachable"  # what a headline measures unless an analysis says otherwise
 
 
+def where_measured(document: Document) -> str:
+    """``measured`` of an analysis only some of whose results measure a workspace: those whose headline has a value."""
+    return "" if (document.get("headline") or {}).get("value") is None else REACHABLE
+
+
 @keywords
 @dataclass(frozen=True)
 class Picture:
@@ -78,7 +83,8 @@ class Presentation:
 
     ``pictures``: those of its results alone. Of a result document, ``facts`` gives lines of the summary, (name, text),
     ``title`` what stands beside robot and sampling, ``sections`` what the report shows instead of fields. ``measured``
-    says what the headline measures, of all documents or of one; "": no workspace, and the facts stand in its place.
+    says what the headline measures, of all documents or of one; "": no workspace, and the facts stand in its place: the
+    first of them says what was found, with its unit.
     ``drawings`` names tables of lines and arcs in a plane, which are saved as drawings. Of a result's `ResultPlots`,
     ``view`` gives what only the analysis adds to its view in a browser, `wsrender.results.view.additions.Additions`; of
     a document, ``job`` is that of the robots which the view shows.
@@ -92,6 +98,10 @@ class Presentation:
     drawings: tuple[str, ...] = ()
     view: Function | None = None
     job: Callable[[Document], Any] = lambda document: document.get("job")
+
+    def measures(self, document: Document) -> str:
+        """What the headline of a document measures; "": no workspace."""
+        return self.measured(document) if callable(self.measured) else self.measured
 
 
 PLANE = "slice"  # the picture of one plane of voxels

@@ -12,6 +12,7 @@ from wsrender.analyses.registry import job_classes
 from wsrender.notices import Notice
 from wsrender.results.export.headline import headline_lines, headline_text, warning_lines
 from wsrender.results.report.page import report_page
+from wsrender.results.view import view_of
 from wsrender.volume.measure import NOT_ASKED
 
 DOCUMENTS = Path(__file__).parents[2] / "golden" / "documents"
@@ -31,6 +32,11 @@ ODD = Notice("inertia_dropped", "the model has no inertias")
         ({"value": 41234.0, "ci95": [41000.0, 41500.0]}, "reachable volume 41234 m³ (95 %: 41000 … 41500)"),
         ({"value": 0.0, "ci95": [0.0, 0.1]}, "reachable volume 0.00 m³ (95 %: 0.00 … 0.10)"),
         ({"value": 1 / 3, "ci95": [1 / 3, 1 / 3]}, "reachable volume 0.333333 m³ (exact)"),
+        ({"value": 80.1, "ci95": [80.1 - 1e-14, 80.1 + 1e-14]}, "reachable volume 80.1 m³ (exact)"),
+        (
+            {"value": 80.1, "ci95": [80.1 - 1e-9, 80.1 + 1e-9]},
+            f"reachable volume {80.1:.9f} m³ (95 %: 80.099999999 … 80.100000001)",
+        ),
         ({"quantity": "area", "unit": "m2"}, "reachable area 3.80 m² (95 %: 3.78 … 3.83)"),
         ({"quantity": "length", "unit": "m", "ci95": None}, "reachable length 3.8012 m"),
         (NONE, "no volume: the tip stays on a surface"),
@@ -59,12 +65,64 @@ def test_facts_stand_for_the_headline_where_no_workspace_is_measured():
     assert ws.Result(document).summary().splitlines() == ["arm", *(f"  {line}" for line in said)]
 
 
+NOTHING = re.compile(r"no (volume|area|length)|measures none")
+
+
 @pytest.mark.parametrize("analysis", job_classes())
-def test_every_result_that_measures_no_workspace_says_something_of_itself(analysis):
-    """Golden documents of every analysis: none says of itself that it measures nothing."""
+def test_every_result_says_first_what_was_found(analysis):
+    """Golden documents of every analysis: none starts with what it has not, unless no refined volume was asked for."""
     for path in DOCUMENTS.glob(f"{analysis}*.json"):
-        lines = headline_lines(json.loads(path.read_text())["document"])
-        assert lines and not any("measures none" in line for line in lines)
+        document = json.loads(path.read_text())["document"] | {"timing_s": defaultdict(float)}  # goldens have no times
+        first, *others = headline_lines(document)
+        asked = document["headline"]["reason"] != NOT_ASKED
+        assert re.search(r"\d", first) if asked else first.startswith("no refined "), path.stem
+        assert not any(NOTHING.match(line) for line in (first, *others)), path.stem
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("capability", ["reached voxels: 30 of 0.1 m, in all 0.03 m³, without an interval",
+                        "reachability index: 0.0375 of the directions on average; "
+                        "105 pairs of voxel and direction undecided",
+                        "dexterous volume: 0.009 m³ of them, from 12.5 % of the directions or more"]),
+        ("collaborative_volume", ["body-elemental volume: 0.001048 m³, biased: "
+                                  "refined_volume gives the true one of two robots"]),
+        ("design_optimization", ["best design: forearm 0.5", "its values: volume_occupied 0.255 m³",
+                                 "at a bound: forearm", "designs: 3, 3 evaluated; every combination"]),
+        ("five_bar", ["working mode +-: 3.0737549 m² (exact), 3 aspects without type 2 singularities",
+                      "working mode -+: 3.6542301 m² (exact), 2 aspects without type 2 singularities"]),
+        ("parallel_workspace.orientation", ["orientations reached: 507 of 576, 82.8 % of their measure; "
+                                            "83.01 % of the whole ranges (95 %: 82.78 … 83.24)"]),
+    ],
+)  # fmt: skip
+def test_what_is_said_where_no_volume_is_measured(name, said):
+    """In the headline's place, and not once more."""
+    document = json.loads((DOCUMENTS / f"{name}.json").read_text())["document"]
+    assert headline_lines(document) == said
+    assert ws.Result(document).summary().splitlines()[1:] == [f"  {line}" for line in said]
+
+
+@pytest.mark.parametrize("name", ["collaborative_volume", "parallel_workspace.orientation"])
+def test_a_view_says_it_once(name):
+    document = json.loads((DOCUMENTS / f"{name}.json").read_text())["document"]
+    shown = view_of(ws.Result(document)).manifest["headline"]
+    assert [f"{line['label']}: {line['value']}".lower() for line in shown] == [
+        line.lower() for line in headline_lines(document)
+    ]
+
+
+def test_of_what_some_results_measure_those_say_it():
+    """A mechanism with one exact volume, and arms whose true volume was asked for."""
+    for name, said in (
+        ("design_optimization.searched", "reachable volume 1.27835 m³ (exact)"),
+        ("collaborative_volume.refined", "collaborative volume 0.0142 m³ (95 %: 0.0137 … 0.0143)"),
+    ):
+        document = json.loads((DOCUMENTS / f"{name}.json").read_text())["document"]
+        assert headline_lines(document) == [said]
+        assert ws.Result(document).summary().splitlines()[1] == f"  {said}"
+    flat = document["headline"] | {"value": None, "ci95": None, "reason": "the tip stays on a surface"}
+    assert headline_lines(document | {"headline": flat}) == ["no volume: the tip stays on a surface"]
 
 
 @pytest.mark.parametrize("path", sorted(DOCUMENTS.glob("*.json")), ids=lambda path: path.stem)

@@ -7,10 +7,15 @@ from wsrender.results.presentation import Picture, Presentation
 
 
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """The mean index, and the volume where all directions are reached."""
-    yield "reachability index", f"{document['capability']['mean_index']:.4g} on average"
-    yield "dexterous volume", f"{document['capability']['dexterous_volume_m3']:.4g} m³"
-    if postures := document["capability"].get("postures"):
+    """How many voxels are reached and what they make, the mean index, and where all directions are reached."""
+    found = document["capability"]
+    voxels, whole = f"{found['voxels']:,} of {document['voxel_size_m']:g} m", f"{found['reachable_volume_m3']:.4g} m³"
+    yield "reached voxels", f"{voxels}, in all {whole}, without an interval"
+    open_ = f"; {found['undecided_pairs']:,} pairs of voxel and direction undecided" if found["undecided_pairs"] else ""
+    yield "reachability index", f"{found['mean_index']:.4g} of the directions on average{open_}"
+    share = f"{100 * found['dexterous_threshold']:.4g} % of the directions"
+    yield "dexterous volume", f"{found['dexterous_volume_m3']:.4g} m³ of them, from {share} or more"
+    if postures := found.get("postures"):
         yield "postures of a pose", f"{postures['mean']:.3g} on average, {postures['most']} at most"
 
 
@@ -32,5 +37,6 @@ PRESENTATION = Presentation(
     (_POSTURES,),
     facts,
     title,
+    measured="",
     view=f"{__name__.rpartition('.')[0]}.view:view",
 )

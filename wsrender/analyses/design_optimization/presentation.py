@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.indices.units import pretty_unit
-from wsrender.results.presentation import Picture, Presentation
+from wsrender.results.presentation import Picture, Presentation, where_measured
 
 _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 _BEST = "wsrender.results.drawing.result_plots:ResultPlots.surface"
@@ -15,10 +15,11 @@ _BEST = "wsrender.results.drawing.result_plots:ResultPlots.surface"
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """The best design and what the search took."""
     search, best = document["search"], document["best"]
+    yield from _facts_of_best(document, best) if best else [("best design", "none has a value")]
     yield "designs", f"{search['designs']:,}, {search['evaluated']:,} evaluated; {search['ended']}"
-    if best is None:
-        yield "best design", "none has a value"
-        return
+
+
+def _facts_of_best(document: Mapping[str, Any], best: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "best design", ", ".join(f"{name} {value:.6g}" for name, value in best["parameters"].items())
     units = {objective["name"]: objective["unit"] or "1" for objective in document["objectives"]}
     values = (f"{name} {value:.6g} {pretty_unit(units[name])}" for name, value in best["values"].items())
@@ -51,6 +52,7 @@ PRESENTATION = Presentation(
         Picture("trade_off", f"{_HERE}:pareto", needs=("tables.pareto", "tables.evaluations"), saved=False),
     ),
     facts,
+    measured=where_measured,
     view=f"{__name__.rpartition('.')[0]}.view:view",
     job=shown_job,
 )

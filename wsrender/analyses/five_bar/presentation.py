@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from wsrender.results.presentation import Picture, Presentation
+from wsrender.results.presentation import Picture, Presentation, where_measured
 
 MODE_VOLUMES = {"++": "plus_plus", "+-": "plus_minus", "-+": "minus_plus", "--": "minus_minus"}
 """Names of the volumes of the working modes."""
@@ -19,7 +19,10 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for found in document["workspaces"]:
         mode = found["working_mode"]
         own = [each for each in document["aspects"] if each["working_mode"] == mode]
-        yield f"working mode {mode}", f"{found['area_m2']:.8g} m², {len(own)} aspects without type 2 singularities"
+        yield (
+            f"working mode {mode}",
+            f"{found['area_m2']:.8g} m² (exact), {len(own)} aspects without type 2 singularities",
+        )
 
 
 PRESENTATION = Presentation(
@@ -40,5 +43,6 @@ PRESENTATION = Presentation(
         Picture("conditioning", f"{_HERE}:conditioning", "", ("tables",), ("volumes",), saved=False),
     ),
     facts,
+    measured=where_measured,
     view=f"{__name__.rpartition('.')[0]}.view:view",
 )

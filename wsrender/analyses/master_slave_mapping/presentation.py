@@ -9,13 +9,15 @@ _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 
 
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """The mapping that was found, or how near the search came."""
+    """The mapping that was found, the volumes, and how near the search came."""
     mapping = document["mapping"]
     scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
     why = ", ".join(f"{count:,} {reason}" for reason, count in mapping.get("reasons", {}).items() if count)
     outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
     outside += f" ({why})" if why else ""
     yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
+    volumes = ", ".join(f"{name} {value:.4g} m³" for name, value in document["volume_m3"].items())
+    yield "volumes", f"{volumes}: of shapes around points, without an interval"
     search = document.get("search") or {"found": True}
     if not search["found"]:
         at = search.get("at_scale", search.get("at_factor"))  # a factor on the job's scale before version 0.2
@@ -26,5 +28,6 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 PRESENTATION = Presentation(
     (Picture("mapping", f"{_HERE}:mapping", needs=("tables.mapping",)),),
     facts,
+    measured="",
     view=f"{__name__.rpartition('.')[0]}.view:view",
 )

@@ -18,7 +18,8 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if (curves := found["self_motions"])["count"]:
         yield "self-motions", f"{curves['count']:,}, {curves['closed']:,} of them closed"
     if aspects := found.get("aspects"):
-        cuspidal = f"{aspects['cuspidal_poses']:,} poses with two postures in one aspect"
+        cuspidal = aspects["cuspidal_poses"]
+        cuspidal = f"{cuspidal:,} pose{'s' * (cuspidal != 1)} with two postures in one aspect"
         yield "aspects", f"up to {aspects['most_of_a_pose']} of a pose; {cuspidal} (cuspidal)"
         yield "aspects proven", f"{aspects['proven']:,} of {found['poses']:,} poses: {aspects['evidence']}"
     yield "complete", f"{found['complete']:,} of {found['poses']:,} poses: {found['evidence']}"

@@ -9,6 +9,7 @@ from wsrender.notices import Notice
 from wsrender.results.presentation import REACHABLE, presentation_of
 from wsrender.volume.measure import NOT_ASKED
 
+ROUNDING = 1e-12  # width of an interval, relative to the value, that is but rounding
 _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
 
 
@@ -18,9 +19,8 @@ def headline_lines(document: Mapping[str, Any]) -> list[str]:
     Of an analysis that measures no workspace its facts, such as ``reachable targets: 97``. Those of several robots
     follow under their names where they have one, or stand alone where each is measured.
     """
-    presentation = presentation_of(document)
-    measured, found = presentation.measured, document.get("headline")
-    whose = measured(document) if callable(measured) else measured
+    presentation, found = presentation_of(document), document.get("headline")
+    whose = presentation.measures(document)
     if not found:
         return []
     if not whose:
@@ -50,7 +50,7 @@ def headline_text(headline: Mapping[str, Any], whose: str = REACHABLE) -> str:
     if value is None:
         return f"no {quantity}: {headline['reason']}"
     unit, reason = pretty_unit(headline["unit"]), f"; {headline['reason']}" if headline.get("reason") else ""
-    if not interval or not interval[1] > interval[0]:
+    if not interval or interval[1] - interval[0] <= ROUNDING * abs(value):
         return f"{whose} {quantity} {value:.6g} {unit}{' (exact)' if interval else ''}{reason}"
     decimals = math.ceil(-math.log10((interval[1] - interval[0]) / 2))
     decimals = max(decimals, 2 - math.floor(math.log10(abs(value)))) if value else decimals

@@ -59,11 +59,10 @@ def summary_facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         reasons = ", ".join(f"{reason} {number:,}" for reason, number in samples["rejected"].items())
         yield name, f"{samples['admitted']:,} of {samples['drawn']:,}; rejected by {reasons}"
     yield from _rejections(document.get("rejections") or {})
-    if flat := document.get("flat"):
-        yield from _flat(flat, headline)
-    else:
-        yield from _measured(document, headline)
-    if (presentation := presentation_of(document)).measured or not headline:  # else they have been said
+    presentation = presentation_of(document)
+    if presentation.measures(document) or not headline:  # else the facts have said it
+        flat = document.get("flat")
+        yield from _flat(flat, headline) if flat else _measured(document, headline)
         yield from presentation.facts(document)
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):

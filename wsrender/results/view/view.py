@@ -184,7 +184,7 @@ def _facts(document: dict[str, Any]) -> Iterator[dict[str, str]]:
         name, colon, text = line.partition(": ")
         yield {"label": said(name) if colon else "", "value": text if colon else line}
     presentation = presentation_of(document)
-    if presentation.measured:
+    if presentation.measures(document):
         yield from ({"label": said(name), "value": text} for name, text in presentation.facts(document))
 
 
