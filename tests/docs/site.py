@@ -23,10 +23,15 @@ def chosen() -> list[str]:
     return _of([path.stem for path in SCRIPTS], CHOSEN)
 
 
+def all_chosen() -> bool:
+    """Whether all scripts are run, as in the long measurement."""
+    return os.environ.get("DOCS_CHOICE") == "all"
+
+
 def _of(names: list[str], count: int) -> list[str]:
-    choice = os.environ.get("DOCS_CHOICE", "")
-    if choice == "all":
+    if all_chosen():
         return names
+    choice = os.environ.get("DOCS_CHOICE", "")
     return sorted(names, key=lambda name: hashlib.sha256(f"{choice}{name}".encode()).digest())[:count]
 
 

@@ -6,7 +6,7 @@ from urllib.parse import quote_plus, unquote, urldefrag, urljoin
 import pytest
 
 import wsrender as ws
-from tests.docs.site import SCRIPTS, build, chosen, serving
+from tests.docs.site import SCRIPTS, all_chosen, build, chosen, serving
 from tests.viewer.axe import serious_faults
 from tests.viewer.written import launch
 from wsrender.analyses.registry import job_classes
@@ -136,7 +136,11 @@ def test_pages_are_whole(browser, address, pages, width):
     context.close()
 
 
-@pytest.mark.parametrize(("width", "theme"), [(1280, "light"), (390, "dark")])
+# Width and theme; of the whole gallery in every look, else in two of them.
+LOOKS = [(1280, "light"), (390, "dark"), *([(1280, "dark"), (390, "light")] if all_chosen() else [])]
+
+
+@pytest.mark.parametrize(("width", "theme"), LOOKS)
 def test_axe_finds_no_serious_fault(browser, address, pages, width, theme):
     context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=theme)
     context.set_default_timeout(PATIENCE_MS)
