@@ -23,6 +23,7 @@ extensions = [
     "citations",
     "mathml",
     "myst_parser",
+    "pictures",
     "reference",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",

@@ -83,6 +83,16 @@ def test_every_picture_is_described(folder, pages):
             assert re.search(r'title="[^"]+"', tag), (name, tag)
 
 
+def test_a_click_on_a_picture_opens_it(folder, pages):
+    """But for those within links, and those of which each theme shows one; of several planes side by side are wide."""
+    link = r'(?:<a class="picture( wide)?" href="([^"]+)">)?<img[^>]*src="([^"]+_images/[^"]+png)"'
+    pictures = [each for name in pages for each in re.findall(link, (folder / name).read_text(encoding="utf-8"))]
+    for wide, opened, shown in pictures:
+        assert opened == shown or re.search(r"_thumb\.|cell_(light|dark)", shown), shown
+        assert wide or "two_arms_on_a_table" not in shown, shown
+    assert any(wide for wide, *_ in pictures) and not all(wide for wide, *_ in pictures)
+
+
 def test_no_link_within_the_site_is_broken(folder, pages):
     for name in pages:
         text = (folder / name).read_text(encoding="utf-8")
@@ -109,6 +119,11 @@ CUT = """wide => [...document.querySelectorAll(".bd-article *")].filter(each => 
 }).map(each => each.outerHTML.slice(0, 80))"""
 
 
+# Pictures of several planes whose letters, of 8 points in 13 inches, would be too small to be read.
+SMALL = """[...document.querySelectorAll(".picture.wide img")]
+  .filter(each => each.clientWidth < 800).map(each => `${each.clientWidth} ${each.src}`)"""
+
+
 @pytest.mark.parametrize("width", [1280, 390])
 def test_pages_are_whole(browser, address, pages, width):
     """Nothing is reported, missing, cut off or asked of another host, and no page is wider than the screen."""
@@ -130,8 +145,9 @@ def test_pages_are_whole(browser, address, pages, width):
         for frame in page.locator("iframe.viewer").all():
             frame.scroll_into_view_if_needed()
             frame.content_frame.locator("canvas").first.wait_for()
+        small = page.evaluate(SMALL)
         wider, cut = page.evaluate("document.documentElement.scrollWidth - innerWidth"), page.evaluate(CUT, width > 960)
-        assert (faults, missing, cut, max(wider, 0)) == ([], [], [], 0), name
+        assert (faults, missing, small, cut, max(wider, 0)) == ([], [], [], [], 0), name
         page.close()
     context.close()
 
