@@ -14,6 +14,7 @@ POINTS = {
     "abb_irb1200_5_90": ("link5", (0.0, 0.0, 0.0)),
     "denso_vs060": ("link5", (0.0, 0.0, 0.0)),
     "doosan_a0509": ("link_6", (0.0, 0.0, 0.0)),  # the flange
+    "doosan_m0609": ("link_6", (0.0, 0.0, 0.0)),  # the flange
     "doosan_m1013": ("link_6", (0.0, 0.0, 0.0)),  # the flange
     "fanuc_crx10ia": ("link3", (0.7, -0.15, 0.0)),  # the flange, the wrist stretched
     "fanuc_crx10ia_l": ("link3", (0.7, -0.15, 0.0)),  # the flange, the wrist stretched

@@ -64,6 +64,7 @@ LISTED = {
 STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no such arm, or not this number
     "abb_irb1200_5_90",  # both are in its name
     "doosan_a0509",  # Open Robot Database (github.com/joernmalzahn/OpenRobotDatabase)
+    "doosan_m0609",  # Open Robot Database
     "fanuc_crx5ia",  # 5 kg are in its name; the reach, to the flange, follows from its lengths
     "franka_fr3",  # those of the Panda
     "kinova_gen3",  # 4 kg in mid range, continuously: Kinova's user guide of the Gen3; the list has 3
