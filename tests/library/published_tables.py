@@ -108,6 +108,7 @@ TABLES: dict[str, PublishedTable] = {
     ),
     "ur10": _ur(127.3, 612, 572.3, 163.941, 115.7, 92.2),
     "ur3": _ur(151.9, 243.65, 213.25, 112.35, 85.35, 81.9),
+    "yaskawa_gp12": _upright((0, 155, 614, 200, 640, 0, 0, 100, 0), FANUC, base=450),
     "yaskawa_gp4": _upright((0, 0, 260, 15, 290, 0, 0, 72, 0), FANUC, base=330),
     "yaskawa_hc20": _upright((380, 0, 820, 0, 880, 0, 0, 200, 0), FANUC),
     "yaskawa_gp7": _upright((0, 40, 445, 40, 440, 0, 0, 80, 0), FANUC, base=330),

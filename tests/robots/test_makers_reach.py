@@ -25,6 +25,7 @@ POINTS = {
     "kuka_kr3_r540": ("link5", (0.0, 0.0, 0.0)),
     "kuka_kr6_r700_sixx": ("link5", (0.0, 0.0, 0.0)),
     "kuka_kr6_r900_sixx": ("link5", (0.0, 0.0, 0.0)),
+    "yaskawa_gp12": ("link_5_b", (0.0, 0.0, 0.0)),
     "yaskawa_gp4": ("link_5_b", (0.0, 0.0, 0.0)),
     "yaskawa_gp7": ("link5", (0.0, 0.0, 0.0)),
     "yaskawa_hc10dtp": ("link4", (0.0, 0.0, 0.0)),
