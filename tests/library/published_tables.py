@@ -90,6 +90,22 @@ PR2 = PublishedTable(
     modified=False,
 )
 
+# UFACTORY's own, of the xArm 5 (xarm-5-lite.md of github.com/xArm-Developer/ufactory_doc_usermanual), whose offsets are
+# the angles of the diagonals of its links.
+UPPER_ARM, FOREARM = complex(53.5, 284.5), complex(77.5, 342.5)
+UPPER_TURN, FORE_TURN = np.angle(UPPER_ARM) / (np.pi / 2), np.angle(FOREARM) / (np.pi / 2)
+XARM5 = PublishedTable(
+    (
+        (-1, 0, 267, 0),
+        (0, abs(UPPER_ARM), 0, -UPPER_TURN),
+        (0, abs(FOREARM), 0, UPPER_TURN + FORE_TURN),
+        (-1, 76, 0, -FORE_TURN),
+        (0, 0, 97, 0),
+    ),
+    (1, 1, 1, 1, 1),
+    modified=False,
+)
+
 TABLES: dict[str, PublishedTable] = {
     "abb_crb15000_5_95": _upright((265, 0, 444, 110, 470, 0, 80, 101, 2), ABB),
     "abb_irb1200_5_90": _upright((399, 0, 448, 42, 451, 0, 0, 82, 2), ABB, base=0.1),
@@ -108,6 +124,7 @@ TABLES: dict[str, PublishedTable] = {
     ),
     "ur10": _ur(127.3, 612, 572.3, 163.941, 115.7, 92.2),
     "ur3": _ur(151.9, 243.65, 213.25, 112.35, 85.35, 81.9),
+    "xarm5": XARM5,
     "yaskawa_gp12": _upright((0, 155, 614, 200, 640, 0, 0, 100, 0), FANUC, base=450),
     "yaskawa_gp4": _upright((0, 0, 260, 15, 290, 0, 0, 72, 0), FANUC, base=330),
     "yaskawa_hc20": _upright((380, 0, 820, 0, 880, 0, 0, 200, 0), FANUC),

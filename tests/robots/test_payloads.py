@@ -71,6 +71,7 @@ STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no s
     "talos_left_arm",  # 6 kg by an arm stretched out: Stasse et al., Humanoids 2017
     "ur10e",  # 12.5 kg: UR's user manual
     "ur30",  # 30 kg are in its name
+    "xarm5",  # UFACTORY's comparison of xArm 5, 6 and 7
     "yaskawa_gp12",  # Open Robot Database
     "yaskawa_gp4",  # 4 kg are in its name; the reach follows from its lengths
 }
