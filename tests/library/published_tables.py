@@ -109,6 +109,7 @@ XARM5 = PublishedTable(
 TABLES: dict[str, PublishedTable] = {
     "abb_crb15000_5_95": _upright((265, 0, 444, 110, 470, 0, 80, 101, 2), ABB),
     "abb_irb1200_5_90": _upright((399, 0, 448, 42, 451, 0, 0, 82, 2), ABB, base=0.1),
+    "abb_irb2600_12_165": _upright((445, 150, 700, 115, 795, 0, 0, 85, 2), ABB),
     "denso_vs060": PublishedTable(
         ((0, 0, 345, 0), (-1, 0, 0, -1), (0, 305, 0, -1), (-1, 10, 300, 0), (1, 0, 0, 0), (-1, 0, 70, 2)), ABB
     ),

@@ -63,6 +63,7 @@ LISTED = {
 }
 STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no such arm, or not this number
     "abb_irb1200_5_90",  # both are in its name
+    "abb_irb2600_12_165",  # both are in its name
     "doosan_a0509",  # Open Robot Database (github.com/joernmalzahn/OpenRobotDatabase)
     "doosan_m0609",  # Open Robot Database
     "fanuc_crx5ia",  # 5 kg are in its name; the reach, to the flange, follows from its lengths
