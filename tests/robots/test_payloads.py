@@ -68,8 +68,11 @@ STATED_ELSEWHERE = {  # payload and reach, or the first alone; the list has no s
     "doosan_m0609",  # Open Robot Database
     "fanuc_crx5ia",  # 5 kg are in its name; the reach, to the flange, follows from its lengths
     "franka_fr3",  # those of the Panda
+    "kinova_gen3_6dof",  # 2 kg over the whole range, continuously: Open Robot Database; the list has 3
     "kinova_gen3",  # 4 kg in mid range, continuously: Kinova's user guide of the Gen3; the list has 3
     "talos_left_arm",  # 6 kg by an arm stretched out: Stasse et al., Humanoids 2017
+    "unitree_g1_left_arm",  # 3 kg of the G1 EDU: data/humanoid_robot_data.csv of the same repository
+    "unitree_g1_right_arm",
     "ur10e",  # 12.5 kg: UR's user manual
     "ur30",  # 30 kg are in its name
     "xarm5",  # UFACTORY's comparison of xArm 5, 6 and 7
