@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from matplotlib.colors import BoundaryNorm
+from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from wsrender.analyses.base_placement.pictures import placement_map, trade_off
 from wsrender.results import drawing
-from wsrender.results.drawing.color_scale import color_scale
+from wsrender.results.drawing.color_scale import ColorScale, color_scale
 from wsrender.results.drawing.style import new_figure
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import CellGrid, Table
@@ -38,6 +38,21 @@ def test_one_outlier_does_not_scale_the_colours_and_the_bar_points_to_it(outlier
 def test_limits_hold_whatever_the_number_of_values(count):
     values = np.append(np.linspace(0.1, 0.9, count), 1e9)
     assert color_scale(values, "value").limits == (0.1, 0.9)
+
+
+@pytest.mark.parametrize("count", [12, 50, 100_000])
+def test_one_small_value_is_no_limit_either(count):
+    scale = color_scale(np.append(np.linspace(100.1, 100.9, count), 1e-3), "value")
+    assert scale.limits == (100.1, 100.9) and scale.extend == "min"
+
+
+def test_values_that_are_missing_count_for_nothing():
+    gaps = [np.nan, np.inf, -np.inf]
+    for values in (VALUES, VALUES - 2.5, np.arange(5.0), np.arange(30.0), np.full(20, 0.25)):
+        scale, expected = color_scale(np.append(values, gaps), "value"), color_scale(values, "value")
+        assert (scale.limits, scale.extend, scale.diverging) == (expected.limits, "neither", expected.diverging)
+        assert type(scale.norm) is type(expected.norm)
+    assert color_scale(np.array(gaps), "value").limits == (-0.5, 1.5)
 
 
 def test_values_that_are_no_outliers_are_all_told_apart():
@@ -86,12 +101,32 @@ def test_counts_have_a_step_each(values):
         assert len(np.unique(bar.cmap(bar.norm(levels)), axis=0)) == len(levels)
 
 
-@pytest.mark.parametrize(("least", "most"), [(0, 13), (1, 20), (0, 1000), (-10, 8), (-30, 7)])
-def test_many_counts_have_whole_ticks(least, most):
-    """Those of differences among them, which have both signs."""
-    ticks = bar_of(np.arange(float(least), most + 1)).get_ticks()
+@pytest.mark.parametrize("height", [1, 2, 4, 8])
+@pytest.mark.parametrize(("least", "most"), [(0, 13), (1, 20), (0, 1000), (-10, 8), (-30, 7), (-2, 3)])
+def test_many_counts_have_whole_ticks(least, most, height):
+    """Those of differences among them, which have both signs, on bars of any height."""
+    figure, values = new_figure(2, height), np.arange(float(least), most + 1)
+    scale = color_scale(values, "value", signed=least < 0)
+    bar = scale.add_bar(figure, ax=figure.add_subplot())
+    low, high = scale.limits
+    ticks = [tick for tick in bar.get_ticks() if low <= tick <= high]
     np.testing.assert_array_equal(ticks, np.round(ticks))
-    assert len(ticks) > 3
+    assert len(ticks) > 2
+
+
+def test_a_line_marks_zero_between_the_signs():
+    for values, lines in ((np.linspace(-0.1, 0.7, 100), 1), (np.linspace(0.1, 0.7, 100), 0)):
+        drawn = [line for line in bar_of(values).ax.lines if np.allclose(line.get_ydata(), 0.0)]
+        assert len(drawn) == lines
+
+
+def test_names_stand_at_their_steps():
+    norm, colors = BoundaryNorm([-0.5, 0.5, 1.5], 2), ListedColormap(["red", "blue"])
+    figure = new_figure(2, 2)
+    scale = ColorScale(norm, colors, "", ticks=[0, 1], names=["free", "blocked by\nself collision"])
+    bar = scale.add_bar(figure, ax=figure.add_subplot())
+    assert bar.get_ticks().tolist() == [0, 1]
+    assert [text.get_text() for text in bar.ax.get_yticklabels()] == ["free", "blocked by\nself collision"]
 
 
 @pytest.mark.parametrize("most", [1, 3, 12, 13, 20, 50])
