@@ -1,6 +1,7 @@
 """The served page as a person uses it."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -263,9 +264,12 @@ def test_the_indices_of_a_configuration_are_the_librarys(watched: Watched, finis
     assert float(shown) == pytest.approx(float(known.map.indices["manipulability"][0]), rel=1e-4)
 
 
+ENDLESS = JOB | {"sampling": {"method": "sobol", "count": 10**10}}
+
+
 def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client: ws.Client, finished: str) -> None:
     """A long one is watched as it goes on; what is deleted is gone from the server too."""
-    long = JOB | {"sampling": {"method": "sobol", "count": 10**10}, "labels": {"of": "the-long-one"}}
+    long = ENDLESS | {"robot": {"library": "scara"}, "labels": {"of": "the-long-one"}}
     job, page = client.submit(long), watched.page
     short = job.id[:8]
     page.goto(watched.url)
@@ -273,15 +277,22 @@ def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client
     row.locator("progress").wait_for()
     other = page.locator(f"tr[data-job='{finished}']")
     other.wait_for()
+    for each, robots in ((row, "scara"), (other, "ur5e")):
+        each.get_by_text(robots, exact=True).wait_for()
     for filter_, choose, shown in (
         ("State", lambda each: each.select_option("succeeded"), (False, True)),
         ("State", lambda each: each.select_option(""), (True, True)),
         ("Label", lambda each: each.fill("of=the-long-one"), (True, False)),
         ("Label", lambda each: each.fill(""), (True, True)),
+        ("Robot", lambda each: each.fill("CAR"), (True, False)),
+        ("Robot", lambda each: each.fill("r5"), (False, True)),
+        ("Robot", lambda each: each.fill(""), (True, True)),
         ("Analysis", lambda each: each.select_option("postures"), (False, False)),
         ("Analysis", lambda each: each.select_option(""), (True, True)),
     ):
-        choose(page.locator(f".jobs > .bar label:has-text('{filter_}') :is(select, input)").first)
+        choose(
+            page.locator(".jobs > .bar label").filter(has_text=re.compile(rf"^\s*{filter_}\b")).locator("select, input")
+        )
         for each, is_shown in zip((row, other), shown, strict=True):
             each.wait_for(state="visible" if is_shown else "detached")
     state = page.locator(f"tr[data-job='{job.id}'][data-state=canceled]")
@@ -297,7 +308,6 @@ def test_jobs_are_filtered_canceled_retried_and_deleted(watched: Watched, client
     assert job.id not in [each.id for each in client.jobs()]
 
 
-ENDLESS = JOB | {"sampling": {"method": "sobol", "count": 10**10}}
 # Records in `seen` the states that a row is shown in.
 WATCH = """(id) => {
   const root = document.querySelector("#wsrender").shadowRoot;
@@ -349,6 +359,28 @@ def test_an_answer_that_an_event_has_overtaken_takes_nothing_back(watched: Watch
     route.fulfill(response=answer)
     page.wait_for_timeout(500)
     assert set(page.evaluate("seen")) <= {"canceled"}
+    page.unroute_all()
+
+
+def test_the_list_is_that_of_the_filters_that_were_chosen_last(
+    watched: Watched, client: ws.Client, finished: str
+) -> None:
+    """An answer to the filters before comes after theirs, and is not shown."""
+    page, held = watched.page, []
+    page.goto(watched.url)
+    row = page.locator(f"tr[data-job='{finished}']")
+    row.wait_for()
+    page.route("**/v1/jobs?*robot=r5*", lambda route: held.append((route, route.fetch())))
+    field = page.get_by_label("Robot", exact=True)
+    field.fill("r5")
+    until(lambda: page.wait_for_timeout(50) or bool(held))
+    field.fill("nobody")
+    page.get_by_text("No jobs like that").wait_for()
+    for route, answer in held:
+        assert finished in [each["id"] for each in answer.json()["items"]]
+        route.fulfill(response=answer)
+    page.wait_for_timeout(500)
+    assert row.count() == 0
     page.unroute_all()
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import wsrender as ws
 from tests.viewer.written import HEIGHT, OFF, WIDTH, WRITTEN, Written, at, decoded, launch, looking, manifest, pixels
+from wsrender.results.drawing.color_scale import color_scale
 from wsrender.results.view import robot_view
 from wsrender.results.view.robots import chain_entry
 from wsrender.results.view.surfaces import ColoredMesh, glb
@@ -162,6 +163,48 @@ def test_the_bar_of_counts_has_whole_ticks(views, most):
     assert views.page.evaluate(ticks, [1.2, 1.8, "linear", 5]) == [1.2, 1.8]
 
 
+def measured():
+    """Values by what is special about them."""
+    rng = np.random.default_rng(9)
+    plain = rng.uniform(2.0, 3.0, 1000)
+    both = rng.normal(0.3, 1.0, 1000)
+    return {
+        "plain": plain,
+        "one above": np.append(plain, 1e6),
+        "one below": np.append(plain, 1e-6),
+        "one beyond each end": np.append(plain, [1e-6, 1e6]),
+        "few with one above": np.append(np.linspace(0.1, 0.9, 12), 1e9),
+        "few with one below": np.append(np.linspace(100.1, 100.9, 12), 1e-3),
+        "too few to have outliers": np.append(np.linspace(0.1, 0.9, 8), 1e9),
+        "most alike": np.append(np.full(1000, 0.5), [0.25, 0.75]),
+        "both signs": both,
+        "both signs, one far below": np.append(both, -1e3),
+        "a sign by rounding": np.append(plain, -1e-12),
+        "with gaps": np.append(plain, [np.nan, np.inf, -np.inf] * 100),
+        "many": rng.normal(5.0, 1.0, 500_000),
+    }
+
+
+@pytest.mark.parametrize("case", measured())
+def test_the_scale_of_values_is_that_of_the_pictures(views, case):
+    """Limits, pointed ends and colours, of the same values."""
+    values = measured()[case].astype(np.float32)
+    expected = color_scale(values, "value")
+    views.blobs["/values"] = values.tobytes()
+    low, high, below, above, diverging = views.page.evaluate(
+        """async () => {
+          const page = await import("/viewer/viewer.js");
+          const of = new Float32Array(await (await fetch("/values")).arrayBuffer());
+          const known = [page.extent(of), page.withoutOutliers(of)];
+          const scale = page.scaleOf({label: "value", unit: "m"}, ...known, null, "magma");
+          return [scale.low, scale.high, scale.below, scale.above, scale.colors === page.table("coolwarm")]; }"""
+    )
+    assert (low, high, diverging) == (*expected.limits, expected.diverging)
+    assert {(True, True): "both", (True, False): "min", (False, True): "max", (False, False): "neither"}[
+        below, above
+    ] == expected.extend
+
+
 @pytest.mark.parametrize("style", ["surface", "translucent", "isosurface", "cells", "points"])
 def test_styles_draw_the_volume_where_it_is(views, style):
     """A ball at a known place covers the pixels that it covers, in both themes."""
@@ -291,14 +334,19 @@ def test_a_chosen_voxel_is_marked(views):
     assert np.abs(at(views.picture(), places) - [194, 24, 91]).max(axis=1).min() > 40
 
 
+def floor_map(written, shares, T_world):
+    """Of a manifest: a map of shares (6, 4) in cells of 20 cm."""
+    return {"name": "map", "label": "map", "T_world": np.ravel(T_world).tolist(), "shape": [6, 4], "cell_m": [0.2, 0.2],
+            "origin_m": [-0.6, -0.4], "channels": [written.channel("share", shares)]}  # fmt: skip
+
+
 def test_maps_points_and_robots(views):
     """A map is painted cell by cell on its plane; a robot stands and is met where its kinematics say."""
     written = Written()
     shares = np.random.default_rng(5).random((6, 4))
     shares[2, 1] = np.nan
     T = [[1, 0, 0, 0.0], [0, 0, -1, 0.3], [0, 1, 0, 0.0], [0, 0, 0, 1]]  # its second axis is z
-    floor = {"name": "map", "label": "map", "T_world": np.ravel(T).tolist(), "shape": [6, 4], "cell_m": [0.2, 0.2],
-             "origin_m": [-0.6, -0.4], "channels": [written.channel("share", shares)]}  # fmt: skip
+    floor = floor_map(written, shares, T)
     robot = ws.load_robot("scara")
     view = robot_view(robot)
     views.show(manifest(maps=[floor], robots=view.manifest["robots"]), written.blobs | dict(view.blobs),
@@ -325,9 +373,8 @@ def around(picture, place, half=6):
     return bool((picture[row - half : row + half + 1, column - half : column + half + 1] != 255).any())
 
 
-def test_arrows_lines_legs_surfaces_and_frames_stand_where_they_are(views):
-    """Each alone: where it is something is drawn, and nothing beside it; hidden, nothing at all."""
-    written, places = Written(), np.array([[-0.6, 0, 0], [-0.3, 0, 0], [0, 0, 0], [0.3, 0, 0]])
+def four_layers(written):
+    """Of a manifest: an arrow, a curve, a leg and a triangle, upright beside each other."""
     glyphs = {"name": "arrows", "label": "arrows", "unit": "N", "origins": written.numbers([-0.6, 0, -0.05], "float32"),
               "vectors": written.numbers([0, 0, 4.0], "float32")}  # fmt: skip
     upright = [[[-0.3, 0, -0.2], [-0.3, 0, 0.2]]]
@@ -337,8 +384,13 @@ def test_arrows_lines_legs_surfaces_and_frames_stand_where_they_are(views):
     written.blobs["patch"] = box = glb([ColoredMesh(corners, np.array([[0, 1, 2]]), (0.0, 0.3, 1.0), "patch")])
     data = {"blob": "patch", "type": "glb", "length": len(box), "compression": None}
     mesh = {"name": "mesh", "label": "mesh", "role": "boundary", "geometry": data}
-    whole = manifest(glyphs=[glyphs], curves=[curve], skeletons=[leg], meshes=[mesh])
-    views.show(whole, written.blobs, camera=looking([0, 0, 0], 1.0))
+    return {"glyphs": [glyphs], "curves": [curve], "skeletons": [leg], "meshes": [mesh]}
+
+
+def test_arrows_lines_legs_surfaces_and_frames_stand_where_they_are(views):
+    """Each alone: where it is something is drawn, and nothing beside it; hidden, nothing at all."""
+    written, places = Written(), np.array([[-0.6, 0, 0], [-0.3, 0, 0], [0, 0, 0], [0.3, 0, 0]])
+    views.show(manifest(**four_layers(written)), written.blobs, camera=looking([0, 0, 0], 1.0))
     views.until("stage.info.idle")
     names, beside = ("arrows", "curve", "leg", "mesh"), places + np.array([0.12, 0, 0])
     for shown in (names, *((name,) for name in names), ()):
@@ -474,12 +526,15 @@ def test_turning_by_hand_and_by_keys(views):
 
 
 def test_views_come_and_go_without_growth(views):
-    """What a view holds on the graphics card is freed with it, and a stage frees all."""
-    values, sizes = block(), []
-    view = robot_view("scara")
-    for _ in range(6):
-        written = Written()
-        shown = manifest(volumes=[written.volume("block", values, FIRST, SIZE)], robots=view.manifest["robots"])
+    """What a view holds on the graphics card is freed with it, and a stage frees all: of two views in turn, each with
+    all styles, slices and a voxel that is marked."""
+    sizes, rng = [], np.random.default_rng(10)
+    for number in range(8):
+        written, other = Written(), number % 2
+        view = robot_view("scara" if other else "ur5e")
+        volumes = [written.volume("block", block(number)[: SHAPE[0] - 3 * other], FIRST, SIZE)]
+        layers = four_layers(written) if other else {"maps": [floor_map(written, rng.random((6, 4)), np.eye(4))]}
+        shown = manifest(volumes=volumes, robots=view.manifest["robots"], **layers)
         folder = f"again{views.count}"
         views.count += 1
         views.blobs |= {f"/{folder}/{name}": data for name, data in (written.blobs | dict(view.blobs)).items()}
@@ -488,10 +543,14 @@ def test_views_come_and_go_without_growth(views):
         views.page.evaluate(
             """async ([manifest, folder]) => {
               await stage.load(manifest, async name => (await fetch(`/${folder}/${name}`)).arrayBuffer());
+              window.settings = page.defaultSettings(manifest);
               stage.apply(structuredClone(settings));
               while (!stage.valuesAt("block", [0, 0, 0]).size) await new Promise(done => setTimeout(done, 5));
               for (const style of ["cells", "translucent", "isosurface", "points", "surface"]) {
                 settings.volumes.block.style = style;
+                settings.slices = [...Array(style.length % 3).keys()].map(k => (
+                  {axis: "xyz"[k], at_m: 0.05, normal: [0, 0, 1], visible: true}));
+                settings.selected = style === "cells" ? {volume: "block", cell: [3, 4, 6]} : null;
                 await new Promise(done => {
                   const off = stage.on("drawn", how => { if (how === "coarse") { off(); done(); } });
                   stage.apply(structuredClone(settings)); }); } }""",
@@ -499,7 +558,7 @@ def test_views_come_and_go_without_growth(views):
         )
         views.rest()
         sizes.append(views.page.evaluate("[stage.info.geometries, stage.info.textures, stage.info.programs]"))
-    assert sizes[-1] == sizes[1]
+    assert sizes[4:6] == sizes[6:8] == sizes[2:4]
     views.page.evaluate("stage.dispose(); stage.dispose()")
     assert views.page.evaluate("document.getElementById('here').children.length") == 0
     assert views.page.evaluate("stage.info.textures") == 0

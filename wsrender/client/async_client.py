@@ -93,10 +93,11 @@ class AsyncClient:
         state: JobState | None = None,
         analysis: str | None = None,
         label: tuple[str, str] | None = None,
+        robot: str | None = None,
         limit: int | None = None,
     ) -> AsyncIterator[AsyncJob]:
         """As `Client.jobs`."""
-        page = operations.first_page(state, analysis, label, limit)
+        page = operations.first_page(state, analysis, label, robot, limit)
         while page is not None:
             records, page = await self._connection.run(operations.page_of_jobs(self._server, page))
             for record in records:

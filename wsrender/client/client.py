@@ -118,10 +118,11 @@ class Client:
         state: JobState | None = None,
         analysis: str | None = None,
         label: tuple[str, str] | None = None,
+        robot: str | None = None,
         limit: int | None = None,
     ) -> Iterator[Job]:
-        """Your jobs, newest first, page by page; ``limit`` bounds their number."""
-        page = operations.first_page(state, analysis, label, limit)
+        """Your jobs, newest first, page by page; ``robot`` is a part of a name, ``limit`` bounds their number."""
+        page = operations.first_page(state, analysis, label, robot, limit)
         while page is not None:
             records, page = self._connection.run(operations.page_of_jobs(self._server, page))
             for record in records:

@@ -88,10 +88,10 @@ class PageOfJobs:
 
 
 def first_page(
-    state: JobState | None, analysis: str | None, label: tuple[str, str] | None, limit: int | None
+    state: JobState | None, analysis: str | None, label: tuple[str, str] | None, robot: str | None, limit: int | None
 ) -> PageOfJobs | None:
     """The newest of the jobs asked for; None where none are wanted."""
-    filters = {"state": state, "analysis": analysis, "label": "=".join(label) if label else None}
+    filters = {"state": state, "analysis": analysis, "label": "=".join(label) if label else None, "robot": robot}
     given = {name: value for name, value in filters.items() if value is not None}
     return None if limit is not None and limit <= 0 else PageOfJobs(given, limit)
 

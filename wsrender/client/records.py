@@ -81,6 +81,7 @@ class JobRecord(TypedDict):
 
     id: str
     analysis: str
+    robots: list[str]
     state: JobState
     created_at: str
     started_at: str | None

@@ -15,6 +15,8 @@ from wsrender.errors import MissingExtraError, ModelError
 MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 20_000  # the largest robots have 4,000
 MAX_DEPTH = 200  # MuJoCo compiles bodies recursively
+LONGEST_BEGINNING = 1 << 16  # characters of a model, in which its name stands
+NAMED_BY = {"mujoco": "model", "robot": "name", "model": "name"}  # attributes of elements
 MOST_SHOWN = 100  # characters of a text in an error
 
 _ENCODING = re.compile(rb"""<\?xml[^>]*\sencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
@@ -49,6 +51,14 @@ def parse(text: str | bytes, field: str = "model") -> ElementTree.Element:
             raise
         raise ModelError(field, f"not well-formed XML: {_reason(error)}") from error
     return builder.root()
+
+
+def title(text: str) -> str | None:
+    """What a model that `parse` takes calls itself, told from its beginning; None: it does not."""
+    beginning = ElementTree.XMLPullParser(["start"])
+    beginning.feed(text[:LONGEST_BEGINNING])
+    found = (each.get(NAMED_BY[each.tag]) for _, each in beginning.read_events() if each.tag in NAMED_BY)
+    return next(found, None)
 
 
 def read(path: Path, field: str = "model") -> bytes:

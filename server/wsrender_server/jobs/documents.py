@@ -8,11 +8,14 @@ from pathlib import Path
 from typing import Any, Self
 
 from wsrender.analyses.jobs import canonical_text
-from wsrender.documents.arm import ArmPath, dotted, local_paths, models_in
+from wsrender.documents.arm import OF_POINTS, ArmPath, dotted, local_paths, models_in
 from wsrender.errors import InputError
+from wsrender.robots import xml_source
 from wsrender_server.jobs.files import DataFolder
 
 LONGEST_IN_ROW = 1 << 14  # characters; there is a task for each of up to hundreds of shards
+MOST_NAMED = 16  # robots of a job that are listed
+LONGEST_NAMED = 100  # characters
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,8 @@ class CanonicalDocument:
     """Library robots of its models; None for each that is none."""
     uploads: tuple[tuple[str, str], ...]
     """Dotted path and SHA-256 of what was uploaded."""
+    robots: str = ""
+    """Names of its robots and mechanisms, a line each, no more than `MOST_NAMED`."""
     text: str | None = None
     """Its JSON."""
 
@@ -51,6 +56,7 @@ class CanonicalDocument:
             document.get("device", "auto"),
             tuple(model.get("library") for _, model in models),
             tuple(_uploads(models)),
+            "\n".join(_names(document, models)),
             text,
         )
 
@@ -98,6 +104,30 @@ class CanonicalDocument:
 def uploads_in(document: Any) -> Iterator[tuple[str, str]]:
     """Dotted path and SHA-256 of every upload that a canonical document names."""
     return _uploads(models_in(document))
+
+
+def _names(document: Mapping[str, Any], models: Iterable[tuple[ArmPath, dict[str, Any]]]) -> list[str]:
+    """What the mechanisms and robots of a canonical document are called, each once."""
+    holders = (document, *(document.get(name) for name in OF_POINTS))
+    found = [
+        each["mechanism"] for each in holders if isinstance(each, dict) and isinstance(each.get("mechanism"), dict)
+    ]
+    names = [each.get("library") or each.get("name") or "" for each in found]
+    names += [_robot_name(robot) for path, robot in models if path[-1] == "robot"]
+    lines = ("".join(each if each.isprintable() else " " for each in name[:LONGEST_NAMED]).strip() for name in names)
+    return [*dict.fromkeys(line for line in lines if line)][:MOST_NAMED]
+
+
+def _robot_name(robot: Mapping[str, Any]) -> str:
+    if robot.get("library") is not None:
+        return robot["library"]
+    if robot.get("dh") is not None:
+        return robot["dh"]["name"]
+    for kind in ("mjcf", "urdf"):
+        if robot.get(kind) is not None:
+            return xml_source.title(robot[kind]) or kind.upper()
+    upload = (robot.get("model") or "")[:8]  # nobody reads it before its job does
+    return Path(robot["entry"]).stem if robot.get("entry") else f"model {upload}"
 
 
 def _uploads(models: Iterable[tuple[ArmPath, dict[str, Any]]]) -> Iterator[tuple[str, str]]:

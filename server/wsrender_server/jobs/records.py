@@ -74,7 +74,7 @@ class JobRecord:
     """A job. ``error`` holds code, message, retryable and where known field.
 
     ``last_event`` is the id of the job's newest event, ``version`` that of the wsrender that computes it; ``device`` is
-    what its document asks for.
+    what its document asks for, ``robots`` are the names of its robots and mechanisms.
     """
 
     id: str
@@ -93,6 +93,7 @@ class JobRecord:
     last_event: int
     version: str
     device: str = "auto"
+    robots: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,7 @@ from wsrender_server.jobs.results import ResultStore
 from wsrender_server.jobs.sole_use import SoleUse, bind, locked_folder
 from wsrender_server.jobs.tables import (
     OF_COMPUTATION,
+    ROBOTS,
     ArtifactFile,
     Computation,
     DeviceTarget,
@@ -227,10 +228,11 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         state: str | None = None,
         analysis: str | None = None,
         label: tuple[str, str] | None = None,
+        robot: str | None = None,
         limit: int = 50,
         cursor: str | None = None,
     ) -> tuple[Jobs, str | None]:
-        """Jobs, newest first, and the cursor of the next page.
+        """Jobs, newest first, and the cursor of the next page; ``robot`` is a part of a name.
 
         Raises InputError for a cursor that this method did not give.
         """
@@ -243,6 +245,8 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         if label is not None:
             key, value = label
             query = query.join(Label, Label.job_id == Job.id).where(Label.key == key, Label.value == value)
+        if robot is not None:
+            query = query.where(ROBOTS.icontains(robot, autoescape=True))
         if cursor is not None:
             time, last = place_of(cursor)
             place = tuple_(literal(time, Timestamp), literal(last))

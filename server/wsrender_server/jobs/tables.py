@@ -221,16 +221,18 @@ class DeviceTarget(Row):
     target: Mapped[str] = mapped_column(String(128))
 
 
-# Of a job's computation, what its record says; documents of earlier versions have no facts.
-OF_COMPUTATION = Computation.version, func.coalesce(Computation.facts["device"].as_string(), "auto")
+ROBOTS = func.coalesce(Computation.facts["robots"].as_string(), "")
+# Of a job's computation, what its record says; documents of earlier versions have no facts, or fewer.
+OF_COMPUTATION = Computation.version, func.coalesce(Computation.facts["device"].as_string(), "auto"), ROBOTS
 
 
 def record_of(job: Job, computation: Computation) -> JobRecord:
     """The plain value of a row."""
-    return job_record(job, computation.version, (computation.facts or {}).get("device", "auto"))
+    facts = computation.facts or {}
+    return job_record(job, computation.version, facts.get("device", "auto"), facts.get("robots", ""))
 
 
-def job_record(job: Job, version: str, device: str) -> JobRecord:
+def job_record(job: Job, version: str, device: str, robots: str) -> JobRecord:
     """The plain value of a row, with `OF_COMPUTATION`."""
     return JobRecord(
         id=job.id,
@@ -249,6 +251,7 @@ def job_record(job: Job, version: str, device: str) -> JobRecord:
         last_event=job.last_event,
         version=version,
         device=device,
+        robots=tuple(filter(None, robots.split("\n"))),
     )
 
 

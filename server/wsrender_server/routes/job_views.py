@@ -100,6 +100,8 @@ class JobView(View):
     """Name of the job."""
     analysis: str = Field(examples=["workspace"])
     """What is analysed."""
+    robots: list[str] = Field(examples=[["ur5e"]])
+    """Names of its robots and mechanisms, up to 16; jobs that an earlier version has taken in name none."""
     state: JobState
     """queued, running, canceling, succeeded, failed, canceled, timed_out, or expired: the result is no longer kept."""
     created_at: datetime

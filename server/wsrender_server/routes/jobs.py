@@ -158,6 +158,13 @@ def list_jobs(
         str | None,
         Query(pattern=r"^[^=\x00]{1,63}=[^\x00]{0,255}$", description="Only jobs with this label, key=value."),
     ] = None,
+    robot: Annotated[
+        str | None,
+        Query(
+            pattern=r"^[^\x00-\x1f\x7f]{1,100}$",
+            description="Only jobs of a robot or mechanism whose name has this in it.",
+        ),
+    ] = None,
     limit: Annotated[int, Query(ge=1, le=200, description="Jobs of a page.")] = 50,
     cursor: Annotated[
         str | None, Query(pattern="^[A-Za-z0-9_-]{1,200}$", description="next_cursor of the page before.")
@@ -169,7 +176,7 @@ def list_jobs(
     key_value = None if label is None else (label.partition("=")[0], label.partition("=")[2])
     try:
         jobs, following = server.store.list(
-            principal.owner, state=state, analysis=analysis, label=key_value, limit=limit, cursor=cursor
+            principal.owner, state=state, analysis=analysis, label=key_value, robot=robot, limit=limit, cursor=cursor
         )
     except InputError as error:  # only the cursor can still be wrong
         raise HttpProblem(404, str(error), "unknown_cursor", errors=[("cursor", error.message)]) from None

@@ -158,9 +158,13 @@ def test_lists_are_filtered_and_paged(client, submit):
         ({"label": "study=a", "state": "queued"}, ids[:0:-1]),
         ({"analysis": "indices_at"}, []),
         ({"analysis": "workspace", "limit": 1}, ids[3:]),
+        ({"robot": "CAR", "label": "study=b"}, ids[:1]),
+        ({"robot": "ur5e"}, []),
     ):
         assert [job["id"] for job in client.get("/v1/jobs", params=query).json()["items"]] == expected
-    for query in ({"state": "x"}, {"limit": 0}, {"limit": 201}, {"label": "x"}, {"analysis": "x"}, {"cursor": "a%b"}):
+    assert {tuple(job["robots"]) for job in client.get("/v1/jobs").json()["items"]} == {("scara",)}
+    wrong = ({"state": "x"}, {"limit": 0}, {"limit": 201}, {"label": "x"}, {"analysis": "x"}, {"cursor": "a%b"})
+    for query in (*wrong, {"robot": ""}, {"robot": "a\0"}, {"robot": "x" * 101}):
         (fault,) = problem_of(client.get("/v1/jobs", params=query), 422)["errors"]
         assert fault["pointer"] in query
     for text in (b"abc", b"1.", b"1.\0", b"x." + b"0" * 32, b"9" * 40 + b"." + b"0" * 32, b"1." + b"0" * 31 + b"\n"):

@@ -2,19 +2,23 @@
 
 import asyncio
 import hashlib
+import json
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime, timedelta
 
 import pytest
+from sqlalchemy import select
 from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.faults import DiskFull, IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord, ComputationState, JobState, Progress
 from wsrender_server.jobs.store import JobStore
+from wsrender_server.jobs.tables import Computation
 
 from tests.server.jobs.documents import canonical
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import InputError
 
 RESULT = b'{"analysis": "workspace"}'
@@ -402,6 +406,69 @@ def test_lists_are_filtered(store, document):
     assert ids(label=("lab", "7")) == [job] and ids(label=("lab", "9")) == []
     assert ids(state="canceled") == [other] and ids(state="queued", label=("run", "a")) == [job]
     assert ids(analysis="workspace") == [other, job] and ids(analysis="indices_at") == []
+
+
+ROWS = [{"a": 0.4, "limits": [-1, 1]}] * 2
+MJCF = (
+    "<mujoco model='crane'><worldbody><body><joint name='a' range='-1 1'/><geom size='.1'/></body></worldbody></mujoco>"
+)
+URDF = '<?xml version="1.0"?><!-- <robot name="other"> --><robot name="Bären&#10;arm"><link name="base"/></robot>'
+UPLOADED = {"model": hashlib.sha256(MJCF.encode()).hexdigest()}
+
+
+@pytest.mark.parametrize(
+    ("robot", "name"),
+    [
+        ({"library": "ur5e"}, "ur5e"),
+        ({"dh": {"convention": "standard", "rows": ROWS, "name": "two links"}}, "two links"),
+        ({"mjcf": MJCF}, "crane"),
+        ({"mjcf": MJCF.replace("model='crane'", "")}, "MJCF"),
+        ({"urdf": URDF}, "Bären arm"),
+        (UPLOADED, f"model {UPLOADED['model'][:8]}"),
+        (UPLOADED | {"entry": "urdf/panda.urdf"}, "panda"),
+    ],
+)
+def test_jobs_name_their_robots(store, robot, name):
+    """And are found by a part of that, in whatever case; signs of patterns stand for themselves."""
+    store.put_model("ann", MJCF.encode())
+    job = store.submit("ann", canonical(robot=robot)).job
+    store.submit("ann", canonical(robot="scara"))
+    assert job.robots == (name,) == store.get("ann", job.id).robots
+
+    def found(part):
+        return [record.id for record in store.list("ann", robot=part)[0]]
+
+    assert found(name) == found(name[1:-1]) == found(name.swapcase() if name.isascii() else name) == [job.id]
+    assert found("_" * len(name)) == found("%") == found(f"{name}%") == []
+
+
+def test_jobs_name_each_of_several_robots_once_and_mechanisms(store):
+    def robots(**fields):
+        return store.submit("ann", json.loads(canonical_json(parse_job(fields)))).job.robots
+
+    sampling = {"method": "sobol", "count": 64}
+    arms = [{"robot": {"library": name}, "sampling": sampling} for name in ("ur5e", "puma560", "ur5e")]
+    assert robots(analysis="shared_workspace", robots=arms, voxel_size_m=0.1) == ("ur5e", "puma560")
+    assert robots(analysis="parallel_workspace", mechanism="six_pus", voxel_size_m=0.1) == ("six_pus",)
+    several = [
+        {
+            "name": f"r{k}",
+            "robot": {"dh": {"convention": "standard", "rows": ROWS, "name": f"arm {k}"}},
+            "sampling": sampling,
+        }
+        for k in range(20)
+    ]
+    assert robots(analysis="robot_comparison", robots=several, voxel_size_m=0.1) == tuple(f"arm {k}" for k in range(16))
+
+
+def test_jobs_that_an_earlier_version_has_taken_in_name_no_robots(store, document):
+    job = store.submit("ann", document).job
+    with store.transactions.write() as session:
+        (row,) = session.scalars(select(Computation))
+        row.facts = {name: value for name, value in row.facts.items() if name != "robots"}
+    assert store.get("ann", job.id).robots == () and store.document("ann", job.id) == document
+    assert [record.robots for record in store.list("ann")[0]] == [()]
+    assert store.list("ann", robot="scara")[0] == []
 
 
 @pytest.mark.parametrize("cursor", ["", "x", "....", "é", "MTIz", "OTk5OTk5OTk5OTk5OTk5OTk5OTk5OTk5Lng", "A" * 5000])

@@ -97,13 +97,19 @@ export function extent(found: ArrayLike<number>): [number, number] | null {
 export function withoutOutliers(found: ArrayLike<number>): [number, number] | null {
   const whole = extent(found);
   if (!whole || whole[0] === whole[1]) return whole;
-  const most = 200_000, known: number[] = [], step = Math.max(1, Math.floor(found.length / most));
+  const most = 200_000, known: number[] = [], step = Math.max(1, Math.floor(found.length / most)); // what decides is told from some of many
   for (let i = 0; i < found.length; i += step) if (Number.isFinite(found[i]!)) known.push(found[i]!);
   if (known.length < 10) return whole;
   const sorted = Float64Array.from(known).sort(), n = sorted.length - 1;
   const a = sorted[Math.ceil(0.02 * n)]!, b = sorted[Math.floor(0.98 * n)]!, span = b - a;
   if (span <= 0) return whole;
-  return [Math.max(whole[0], sorted.find((v) => v >= a - span)!), Math.min(whole[1], sorted.findLast((v) => v <= b + span)!)];
+  let [high, low] = whole;
+  for (let i = 0; i < found.length; i++) {
+    const v = found[i]!;
+    if (v < low && v >= a - span) low = v;
+    if (v > high && v <= b + span) high = v;
+  }
+  return [low, high];
 }
 
 /** Values with their extents, which settings ask for again and again. */

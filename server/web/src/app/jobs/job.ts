@@ -11,6 +11,7 @@ export interface Progress { fraction: number; samples_done: number; samples_tota
 export interface Job {
   id: string;
   analysis: string;
+  robots: string[]; // and mechanisms, by name
   state: State;
   created_at: string;
   started_at: string | null;

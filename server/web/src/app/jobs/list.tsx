@@ -13,10 +13,11 @@ const PAGE = 50;
 
 export function JobList({ api, go }: { api: Api; go: Go }) {
   const [jobs, setJobs] = useState<Job[] | null>(null), [next, setNext] = useState<string | null>(null), [problem, setProblem] = useState(""), [undone, setUndone] = useState("");
-  const [state, setState] = useState(""), [analysis, setAnalysis] = useState(""), [label, setLabel] = useState(""), [said, setSaid] = useState("");
+  const [state, setState] = useState(""), [analysis, setAnalysis] = useState(""), [label, setLabel] = useState(""), [robot, setRobot] = useState(""), [said, setSaid] = useState("");
   const [open, setOpen] = useState(""), [marked, setMarked] = useState<string[]>([]);
   const analyses = useLoaded(async () => new Schemas(await api.description()).analyses(), [api]);
   const further = useRef(false); // whether more than the first page is shown
+  const asking = useRef(0); // what was asked before other filters were chosen is no longer shown
   const followed = useRef(new Map<string, AbortController>());
 
   const query = (cursor?: string) => {
@@ -24,22 +25,27 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
     if (state) parameters.set("state", state);
     if (analysis) parameters.set("analysis", analysis);
     if (/^[^=]+=/.test(label)) parameters.set("label", label);
+    if (robot) parameters.set("robot", robot);
     if (cursor) parameters.set("cursor", cursor);
     return `v1/jobs?${parameters}`;
   };
   const load = async () => {
+    const asked = asking.current;
     try {
       const page = await api.get<{ items: Job[]; next_cursor: string | null }>(query());
+      if (asked !== asking.current) return;
       setJobs((before) => [...page.items.map((job) => newer(before?.find((each) => each.id === job.id), job)), ...(further.current ? olderThan(page.items, before ?? []) : [])]);
       if (!further.current) setNext(page.next_cursor);
       setProblem("");
     } catch (error) {
-      setProblem(message(error));
+      if (asked === asking.current) setProblem(message(error));
     }
   };
   const more = async () => {
+    const asked = asking.current;
     try {
       const page = await api.get<{ items: Job[]; next_cursor: string | null }>(query(next!));
+      if (asked !== asking.current) return;
       further.current = true;
       setJobs((before) => [...(before ?? []), ...page.items]);
       setNext(page.next_cursor);
@@ -51,11 +57,12 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
 
   useEffect(() => {
     setJobs(null);
+    asking.current++;
     further.current = false;
     void load();
     const timer = setInterval(() => { if (document.visibilityState === "visible") void load(); }, LOOK_AGAIN_MS);
     return () => clearInterval(timer);
-  }, [state, analysis, label, api.key.value]);
+  }, [state, analysis, label, robot, api.key.value]);
 
   useEffect(() => { // the newest that go on are followed by their events
     const going = (jobs ?? []).filter((job) => !ENDED.includes(job.state)).slice(0, MOST_FOLLOWED);
@@ -110,6 +117,7 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
           <option value="">all</option>
           {(analyses.value ?? []).map((each) => <option value={each.name}>{each.title}</option>)}
         </select></label>
+        <label>Robot <input type="text" placeholder="part of its name" maxLength={100} value={robot} onInput={(e) => setRobot(e.currentTarget.value)} /></label>
         <label>Label <input type="text" placeholder="key=value" value={label} onInput={(e) => setLabel(e.currentTarget.value)} /></label>
         <span class="space" />
         <button disabled={marked.length !== 2} onClick={() => go({ page: "compare", first: marked[0]!, second: marked[1]! })}>Compare two{marked.length ? ` (${marked.length} marked)` : ""}</button>
@@ -117,9 +125,9 @@ export function JobList({ api, go }: { api: Api; go: Go }) {
       </div>
       <p class="hidden" role="status" aria-live="polite">{said}</p>
       {[problem, undone].map((each) => each && <p class="problem" role="alert">{each}</p>)}
-      {!jobs ? !problem && <p class="wait" role="status">Reading the jobs …</p> : jobs.length === 0 ? <p class="empty">No jobs{state || analysis || label ? " like that" : " yet"}. <button class="link" onClick={() => go({ page: "new", start: null })}>Write one</button>.</p> : (
+      {!jobs ? !problem && <p class="wait" role="status">Reading the jobs …</p> : jobs.length === 0 ? <p class="empty">No jobs{state || analysis || label || robot ? " like that" : " yet"}. <button class="link" onClick={() => go({ page: "new", start: null })}>Write one</button>.</p> : (
         <div class="table"><table>
-          <thead><tr><th scope="col"><span class="hidden">Compare</span></th><th scope="col">Job</th><th scope="col">Analysis</th><th scope="col">State</th><th scope="col">Progress</th><th scope="col">Submitted</th><th scope="col">Labels</th><th scope="col">What to do</th></tr></thead>
+          <thead><tr><th scope="col"><span class="hidden">Compare</span></th><th scope="col">Job</th><th scope="col">Analysis, robots</th><th scope="col">State</th><th scope="col">Progress</th><th scope="col">Submitted</th><th scope="col">Labels</th><th scope="col">What to do</th></tr></thead>
           <tbody>{jobs.map((job) => <Row key={job.id} job={job} api={api} go={go} open={open === job.id} onOpen={() => setOpen(open === job.id ? "" : job.id)} marked={marked.includes(job.id)} onMark={() => mark(job.id)} act={act} />)}</tbody>
         </table></div>
       )}
@@ -141,7 +149,7 @@ function Row({ job, api, go, open, onOpen, marked, onMark, act }: { job: Job; ap
       <tr data-job={job.id} data-state={job.state}>
         <td>{done && <input type="checkbox" aria-label={`Compare job ${short}`} checked={marked} onChange={onMark} />}</td>
         <td class="mono">{done ? <button class="link" onClick={() => go({ page: "job", id: job.id })}>{short}</button> : short}</td>
-        <td>{words(job.analysis)}</td>
+        <td>{words(job.analysis)}{job.robots.length > 0 && <span class="of">{job.robots.join(", ")}</span>}</td>
         <td><span class={`state ${job.state}`}>{job.state.replace("_", " ")}</span></td>
         <td><Bar job={job} /></td>
         <td><time dateTime={job.created_at}>{new Date(job.created_at).toLocaleString()}</time></td>
