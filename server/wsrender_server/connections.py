@@ -128,7 +128,7 @@ def _host(client: tuple[str, int] | None) -> str:
 
 
 class BodyLayer:
-    """Around all other layers: a body that does not come in time is answered with 408, and no answer comes before its body.
+    """Around all other layers: a body that does not come in time is answered with 408, and no answer overtakes a body.
 
     What answers unread, a refusal mostly, has the body read for it: proxies written in Go (Caddy) break off an answer
     that overtakes the request's body. A client that waits to be asked (``Expect: 100-continue``) is not asked for it.

@@ -21,7 +21,7 @@ from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from wsrender.errors import WsrenderError
 from wsrender.robots.uploaded import MODELS_VARIABLE
-from wsrender_server.jobs.child_process import resident_bytes, settle_in
+from wsrender_server.jobs.child_process import how_it_ended, resident_bytes, settle_in
 from wsrender_server.problems import HttpProblem, problem_of_error, refusal
 
 MOST_WAITING = 32  # of an owner, for a side process
@@ -73,7 +73,8 @@ class SideProcess:
         except FutureTimeoutError as error:
             raise HttpProblem(409, f"took longer than {timeout_s:g} s", "too_slow") from error
         except ProcessExpired as error:
-            raise HttpProblem(409, "the process that worked on this request crashed", "crashed") from error
+            how = how_it_ended(error.exitcode)
+            raise HttpProblem(409, f"the process that worked on this request crashed ({how})", "crashed") from error
         if problem is not None:
             raise refusal(problem, 409 if problem["status"] == 422 else problem["status"])
         return value

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import psutil
@@ -30,10 +31,30 @@ def give_back_memory() -> None:
 
 
 def kill(pid: int | None) -> None:
-    """Kill a process, if it is there."""
+    """Kill a child of this process, if it is there; whoever else has got its number since it ended is left alone."""
     if pid is not None:
         with contextlib.suppress(psutil.Error):  # it may have ended by itself
-            psutil.Process(pid).kill()
+            process = psutil.Process(pid)
+            if process.ppid() == os.getpid():
+                process.kill()
+
+
+def how_it_ended(exit_code: int | None) -> str:
+    """What an exit code of `multiprocessing` says: the name of the signal that ended a process, or the code."""
+    if exit_code is None:
+        return "unknown how"
+    if exit_code >= 0:
+        return f"exit code {exit_code}"
+    try:
+        return signal.Signals(-exit_code).name
+    except ValueError:  # a real-time signal, which has no name
+        return f"signal {-exit_code}"
+
+
+def end_of(process: BaseProcess, patience_s: float = 2.0) -> str:
+    """How a process ended that has closed its link, which it does a moment before its end."""
+    process.join(patience_s)
+    return "it goes on" if process.is_alive() else how_it_ended(process.exitcode)
 
 
 def resident_bytes(pid: int | None) -> int:

@@ -2,7 +2,6 @@
 
 import multiprocessing
 import os
-import signal
 import threading
 import time
 from collections import OrderedDict
@@ -17,7 +16,7 @@ from pebble import ProcessExpired, ProcessPool
 
 from wsrender.errors import DocumentError, InputError, WsrenderError
 from wsrender_server.jobs import steps
-from wsrender_server.jobs.child_process import kill, resident_bytes
+from wsrender_server.jobs.child_process import how_it_ended, kill, resident_bytes
 from wsrender_server.jobs.files import is_full
 from wsrender_server.jobs.task import Outcome, Step, Task, TaskLimits, Verdict, error
 from wsrender_server.settings import Settings
@@ -215,8 +214,7 @@ class KernelProcess:
         if exit_code is None or exit_code == KILLED:
             # Killed from outside: by an administrator, or by a system short of memory.
             return Outcome(Verdict.LOST, error=error("worker_lost", "the kernel process was killed", retryable=True))
-        name = signal.Signals(-exit_code).name if exit_code < 0 else f"exit code {exit_code}"
-        message = f"the kernel process crashed ({name}); other jobs are not affected"
+        message = f"the kernel process crashed ({how_it_ended(exit_code)}); other jobs are not affected"
         return Outcome(Verdict.FAILED, error=error("kernel_crash", message))
 
     def _discard(self) -> None:

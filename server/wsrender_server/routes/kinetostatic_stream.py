@@ -20,6 +20,7 @@ from wsrender.errors import DocumentError, WsrenderError
 from wsrender_server.admission import check_models, check_uploads, refuse_paths
 from wsrender_server.auth import Principal, until_revoked
 from wsrender_server.job_body import check_size
+from wsrender_server.jobs.child_process import end_of
 from wsrender_server.jobs.documents import uploads_in
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
@@ -139,7 +140,9 @@ async def _to_client(websocket: WebSocket, session: Session) -> None:
     elif last.startswith(b'{"type":"fault"'):
         await websocket.close(POLICY)
     else:
-        raise HttpProblem(500, "the process of this stream ended", "crashed")
+        how = await run_in_threadpool(end_of, session.process)
+        log.error("the process of a stream ended", how=how, pid=session.process.pid)
+        raise HttpProblem(500, f"the process of this stream ended ({how})", "crashed")
 
 
 async def _refuse(websocket: WebSocket, problem: dict[str, Any]) -> None:

@@ -22,6 +22,7 @@ from wsrender.results.export.artifacts import named_files, part_file
 from wsrender.robots import library
 from wsrender_server.admission import EDITED
 from wsrender_server.auth import Principal, Scope, until_revoked
+from wsrender_server.jobs.child_process import end_of
 from wsrender_server.jobs.records import JobState
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses
@@ -187,7 +188,9 @@ async def _to_page(websocket: WebSocket, session: ViewSession) -> None:
         await _taken_in(websocket.send_bytes(answer))
     if session.too_large:
         raise HttpProblem(409, "the session took more memory than is allowed", "out_of_memory")
-    raise HttpProblem(500, "the process of this session ended", "crashed")
+    how = await run_in_threadpool(end_of, session.process)
+    log.error("the process of a session ended", how=how, pid=session.process.pid)
+    raise HttpProblem(500, f"the process of this session ended ({how})", "crashed")
 
 
 def _refused_in(answer: bytes) -> dict[str, str] | None:

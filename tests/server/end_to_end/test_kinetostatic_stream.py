@@ -34,7 +34,7 @@ def arm():
 def settled(stream, samples=120, **sample):
     """The answer after so many samples: the force has risen."""
     for _ in range(samples):
-        message = stream.exchange(**sample, timeout_s=10)
+        message = stream.exchange(**sample, timeout_s=60)
     return message
 
 
@@ -42,7 +42,7 @@ def raw(server, **options):
     return connect(server.url.replace("http", "ws") + PATH, compression=None, **options)
 
 
-def received(socket, kind, patience_s=30.0):
+def received(socket, kind, patience_s=60.0):
     end = time.monotonic() + patience_s
     while time.monotonic() < end:
         message = json.loads(socket.recv(patience_s))
@@ -77,7 +77,7 @@ def test_configurations_and_forces(client, arm):
         assert 0 <= force.latency_s < 1
         assert 0 <= force.wait_s < 1
         assert np.linalg.norm(stream.force()) > 1
-        asked = Statistics.model_validate(stream.ask_statistics())
+        asked = Statistics.model_validate(stream.ask_statistics(60))
         assert asked.samples == 120
     closed = Statistics.model_validate(stream.statistics)
     assert closed.type == "closed"
@@ -99,9 +99,11 @@ def test_poses_are_solved_in_the_loop(client, arm):
 
 def test_silence_ends_the_force_on_both_sides(client, arm):
     with client.kinetostatic_stream(ROBOT, stale_after_s=0.3) as stream:
-        settled(stream, configuration=arm[1])
-        assert stream.force().any()
-        while stream.receive(10)["state"] != "stale":
+        end = time.monotonic() + 60
+        while not stream.force().any():  # on a busy machine samples may come later than that
+            assert time.monotonic() < end
+            stream.exchange(arm[1], timeout_s=60)
+        while stream.receive(60)["state"] != "stale":
             pass
         assert stream.last["force_n"] == [0, 0, 0]
         assert not stream.force().any()
@@ -124,11 +126,11 @@ def test_wrong_messages_end_the_force_and_not_the_stream(client, arm):
         for text, detail in WRONG.items():
             assert any(settled(stream, 20, configuration=arm[1])["force_n"])
             stream._socket.send(text)
-            while (message := stream.receive(10))["state"] != "invalid_input":
+            while (message := stream.receive(60))["state"] != "invalid_input":
                 pass
             assert detail in message["detail"]
             assert message["force_n"] == [0, 0, 0]
-        assert stream.ask_statistics()["refused"] == 5  # the other samples are well formed
+        assert stream.ask_statistics(60)["refused"] == 5  # the other samples are well formed
 
 
 @pytest.mark.parametrize("value", [1e307, -1e160, 1e7])
@@ -152,7 +154,7 @@ def test_several_clients_each_with_their_own_robot(client, arm):
         client.kinetostatic_stream("ur5e", **PATIENT, field={"form": "normalised"}) as other,
     ):
         assert any(settled(one, configuration=arm[1])["force_n"])
-        assert other.exchange([0.1, -1.0, 1.0, 0.2, 0.5, 0.1], timeout_s=10)["force_n"] == [0, 0, 0]
+        assert other.exchange([0.1, -1.0, 1.0, 0.2, 0.5, 0.1], timeout_s=60)["force_n"] == [0, 0, 0]
         assert (one.opened["robot"], other.opened["robot"]) == (ROBOT, "ur5e")
         with pytest.raises(ws.QuotaError, match="you have 2 live streams"), client.kinetostatic_stream(ROBOT):
             pass
@@ -171,7 +173,7 @@ def test_a_client_that_is_gone_takes_its_loop_along(server, arm):
         started = children(server) - before
         assert started
         socket.socket.shutdown(2)  # without a word
-    end = time.monotonic() + 20
+    end = time.monotonic() + 60
     while any(psutil.pid_exists(pid) for pid in started):
         assert time.monotonic() < end, "the loop goes on"
         time.sleep(0.05)
@@ -184,9 +186,9 @@ def test_a_loop_that_is_killed_ends_its_stream_with_a_fault(server, client):
         for pid in children(server) - before:
             os.kill(pid, signal.SIGKILL)
         fault = received(socket, "fault")
-        assert fault["code"] == "crashed"
+        assert fault["code"] == "crashed" and "SIGKILL" in fault["detail"]
         with pytest.raises(ConnectionClosed):
-            socket.recv(10)
+            socket.recv(60)
     assert client.robots()  # the server lives
 
 
@@ -195,7 +197,7 @@ def test_the_force_is_zero_where_the_server_is_gone(tmp_path, arm):
         with client.kinetostatic_stream(ROBOT, **PATIENT) as stream:
             assert any(settled(stream, configuration=arm[1])["force_n"])
             server.kill_all()
-            end = time.monotonic() + 10
+            end = time.monotonic() + 60
             while stream.force().any():
                 assert time.monotonic() < end
         assert stream.statistics == {}
@@ -207,7 +209,7 @@ def test_too_long_a_message_ends_the_stream(server):
         socket.send(" " * 5000)
         assert received(socket, "fault")["code"] == "message_too_large"
         with pytest.raises(ConnectionClosed) as closed:
-            socket.recv(10)
+            socket.recv(60)
         assert closed.value.rcvd.code == 1009
 
 
@@ -279,7 +281,7 @@ def test_keys(tmp_path, arm):
 
 
 def test_the_messages_are_described(server):
-    document = httpx2.get(f"{server.url}{PATH}/asyncapi.json", timeout=30).json()
+    document = httpx2.get(f"{server.url}{PATH}/asyncapi.json", timeout=60).json()
     assert document["asyncapi"] == "3.0.0"
     assert document["channels"]["stream"]["address"] == PATH
     assert {"StreamOpen", "Sample", "Force", "Opened", "Fault"} <= set(document["components"]["messages"])
