@@ -8,9 +8,13 @@ from typing import Any
 
 
 class Changes:
-    """Wakes the coroutines that follow a job, from any thread of this process."""
+    """Wakes the coroutines that follow a job, from any thread of this process.
+
+    ``listener()`` is called at every change, in the thread that makes it.
+    """
 
     def __init__(self):
+        self.listener: Callable[[], None] = lambda: None
         self._lock = threading.Lock()
         self._watches: dict[tuple[str, asyncio.AbstractEventLoop], Watch] = {}
         self.closed = False
@@ -26,6 +30,7 @@ class Changes:
         """Wake everyone who follows one of these jobs."""
         with self._lock:
             watches = [watch for (job, _), watch in self._watches.items() if job in jobs]
+        self.listener()
         for watch in watches:
             if not watch.loop.is_closed():
                 watch.loop.call_soon_threadsafe(watch.changed)

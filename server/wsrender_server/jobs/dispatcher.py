@@ -61,12 +61,15 @@ class Dispatcher:
         self._sought = 0.0  # when lost targets were looked for
         self._seen: dict[str, float] = {}  # when a worker of each target was last alive
         self._workers_s = WORKERS_S + settings.worker_start_s
+        self._hurried = 0.0  # when the table was last looked at for somebody who had just changed it
+        self._changed = threading.Event()  # by others: requests
         self._end = threading.Event()
         self._wake = threading.Event()
         self._thread = threading.Thread(target=self._loop, name="dispatcher", daemon=True)
 
     def start(self) -> None:
         """Start the thread; the engine starts within it."""
+        self.store.changes.listener = self._hear
         self._thread.start()
 
     def stop(self) -> None:
@@ -88,6 +91,12 @@ class Dispatcher:
         if self._targets and device.partition(":")[0] not in self._targets:
             return "waiting for a worker with a CUDA GPU"
         return f"waiting for {'a free worker' if self._targets else 'a worker to start'}"
+
+    def _hear(self) -> None:
+        """A job has changed: one that was just submitted does not wait for the next tick."""
+        if threading.current_thread() is not self._thread:
+            self._changed.set()
+            self._wake.set()
 
     def _loop(self) -> None:
         recovered = joined = False
@@ -136,6 +145,9 @@ class Dispatcher:
         self._handle_inbox()
         now = time.monotonic()
         if now - self._ticked < TICK_S:  # messages come by the hundred, and each wakes this thread
+            if self._changed.is_set() and now - self._hurried >= TICK_S:
+                self._hurried = now
+                self._look(now, FEW_LAUNCHES)
             return
         self._ticked = now
         self.store.sole_use.keep()
@@ -144,13 +156,18 @@ class Dispatcher:
         if now - self._sought >= LOOK_S:
             self._sought = now
             self._leave_lost_targets()
+        self._look(now)
+        self._record_progress()
+
+    def _look(self, now: float, most: int = MOST_LAUNCHES) -> None:
+        """Stop what nobody wants any more, and hand out so much of what waits."""
+        self._changed.clear()
         known = self._unfinished(now)
         old = [key for key, attempt in self._attempts.items() if known.get(key, (None, 0))[1] != attempt.record.attempt]
         unwanted = [key for key, (state, _) in known.items() if state == ComputationState.STOPPING]
         self._stop(set(old + unwanted))
         if self._targets or not self.engine.embedded:  # our own workers come anyway, and say what they are
-            self._launch_some()
-        self._record_progress()
+            self._launch_some(most)
 
     def _unfinished(self, now: float) -> Mapping[str, tuple[ComputationState, int]]:
         """What is unfinished: thousands of rows, read when anything was written."""
@@ -159,11 +176,11 @@ class Dispatcher:
             self._known, self._written, self._looked = self.store.unfinished(), written, now
         return self._known
 
-    def _launch_some(self) -> None:
+    def _launch_some(self, most: int = MOST_LAUNCHES) -> None:
         """Hand out what waits, of much the first; owners take turns."""
         here = {*self._targets, *self.engine.alive}
         waiting = sum(not attempt.begun and attempt.target in here for attempt in self._attempts.values())
-        most = MOST_LAUNCHES if waiting < AHEAD else FEW_LAUNCHES
+        most = most if waiting < AHEAD else FEW_LAUNCHES
         stopping = ComputationState.STOPPING
         ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
         if len(ready) > most:

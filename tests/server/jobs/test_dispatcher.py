@@ -1,5 +1,6 @@
 """What the dispatcher makes of ends of tasks where the database does not answer at the same moment."""
 
+import threading
 import time
 from types import SimpleNamespace
 
@@ -153,6 +154,40 @@ def test_messages_by_the_hundred_are_no_looks_at_the_table_by_the_hundred(store,
     store.submit("ann", document)
     out.dispatcher._tick()
     assert len(out.sent) == 1, "what comes is seen at the next tick"
+
+
+def test_a_submission_waits_for_no_tick_and_a_flood_of_them_does(store, out, monkeypatch):
+    """One goes out at once; what comes with it, and soon after it, at the ticks."""
+    dispatcher, never = out.dispatcher, time.monotonic() + 3600
+    dispatcher.engine.embedded = False
+    store.changes.listener = dispatcher._hear
+    dispatcher._ticked = never
+    dispatcher._tick()
+    for number in range(3):
+        store.submit("ann", document_of(number))
+    assert dispatcher._wake.is_set()
+    dispatcher._tick()
+    assert len(out.sent) == 1
+    store.submit("ann", document_of(3))
+    dispatcher._hurried = never
+    dispatcher._tick()
+    assert len(out.sent) == 1
+    dispatcher._ticked = 0.0
+    monkeypatch.setattr(dispatcher, "_update_targets", lambda: None)
+    dispatcher._tick()
+    assert len(out.sent) == 4
+
+
+def test_a_dispatcher_hears_of_submissions_and_not_of_its_own_changes(store, document, tmp_path, monkeypatch):
+    monkeypatch.setattr(Dispatcher, "_loop", lambda self: None)
+    dispatcher = Dispatcher(store, Settings(data_dir=tmp_path / "data"))
+    dispatcher.start()
+    monkeypatch.setattr(dispatcher, "_thread", threading.current_thread())
+    store.changes.notify("a job")
+    assert not dispatcher._wake.is_set()
+    monkeypatch.undo()
+    store.submit("ann", document)
+    assert dispatcher._wake.is_set() and dispatcher._changed.is_set()
 
 
 @pytest.mark.parametrize("fault", [EngineSlow("slow"), OSError("stale file handle")])
