@@ -1,4 +1,7 @@
-"""A PostgreSQL server for the tests that need one: the one of the environment, else one started for the session."""
+"""A PostgreSQL server for the tests that need one: the one of the environment, else one started for the session.
+
+Tests that fail show what their servers have logged, which goes with its folder.
+"""
 
 import os
 import shutil
@@ -7,6 +10,7 @@ import socket
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,9 +18,29 @@ from typing import Any
 
 import pytest
 from sqlalchemy import create_engine, make_url, text
+from wsrender_server.local_server import LocalServer
 
 URL_VARIABLE = "WSRENDER_TEST_POSTGRES_URL"
 NOBODY = 65534
+SHOWN = 6000  # characters of a log
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item):
+    """Add the ends of the logs to the report of a test that has failed."""
+    report = yield
+    if report.failed:
+        report.sections += ends_of_logs(getattr(item, "funcargs", {}).values())
+    return report
+
+
+def ends_of_logs(values: Iterable[object]) -> Iterator[tuple[str, str]]:
+    """Name and end of every log of servers, and in folders, that a test was given."""
+    for value in values:
+        paths = [value.log] if isinstance(value, LocalServer) else []
+        paths += sorted(value.rglob("*.log")) if isinstance(value, Path) else []
+        for path in filter(Path.is_file, paths):
+            yield f"end of {path}", path.read_text(errors="replace")[-SHOWN:]
 
 
 @pytest.fixture(scope="session")
@@ -74,7 +98,7 @@ def postgres_server():
         yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres", server
     finally:
         server.process.send_signal(signal.SIGINT)  # fast: connections that are open are closed
-        server.process.wait(20)
+        server.process.wait(60)
         shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -122,7 +146,7 @@ def free_port():
         return listener.getsockname()[1]
 
 
-def wait_for_port(port, process, timeout=30.0):
+def wait_for_port(port, process, timeout=60.0):
     """Wait until a process answers on a port."""
     ends = time.monotonic() + timeout
     while time.monotonic() < ends:

@@ -43,7 +43,7 @@ def test_a_slow_download_survives_the_deletion(port, jobs, large_result):
     folder, sha256 = large_result
     job = jobs.store.submit("local", canonical()).job.id
     jobs.complete(job, folder)
-    with socket.create_connection(("127.0.0.1", port), timeout=30) as slow:
+    with socket.create_connection(("127.0.0.1", port), timeout=60) as slow:
         request = f"GET /v1/jobs/{job}/artifacts/{NAME} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"
         slow.sendall(request.encode())
         received = slow.recv(1024)

@@ -48,18 +48,18 @@ def test_a_queued_job_says_what_it_waits_for(client, submit, jobs):
 
 def test_waiting_ends_with_the_job(client, submit, jobs, result_folder):
     job = submit()
-    threading.Timer(0.5, jobs.complete, (job["id"], result_folder)).start()
     started = time.monotonic()
-    found = client.get(f"/v1/jobs/{job['id']}", params={"wait": 20}).json()
+    threading.Timer(0.5, jobs.complete, (job["id"], result_folder)).start()
+    found = client.get(f"/v1/jobs/{job['id']}", params={"wait": 60}).json()
     assert found["state"] == "succeeded" and found["progress"]["fraction"] == 1 and found["finished_at"]
-    assert 0.3 < time.monotonic() - started < 10
+    assert 0.5 <= time.monotonic() - started < 60
 
 
 def test_waiting_ends_in_time(client, submit):
     job = submit()
     started = time.monotonic()
     assert client.get(f"/v1/jobs/{job['id']}", params={"wait": 0.3}).json()["state"] == "queued"
-    assert 0.3 <= time.monotonic() - started < 5
+    assert 0.3 <= time.monotonic() - started < 60
 
 
 def test_a_status_says_whether_what_was_waited_for_has_come(client, submit, jobs, result_folder):
@@ -76,7 +76,7 @@ def test_a_submission_waits_for_its_job(client, jobs, result_folder):
     assert (open_yet.status_code, first["state"]) == (202, "queued") and "Retry-After" in open_yet.headers
     timer = threading.Timer(0.5, jobs.complete, (first["id"], result_folder))
     timer.start()
-    ended = client.post("/v1/jobs", json=DOCUMENT, params={"wait": 30})  # an equal one, of the same computation
+    ended = client.post("/v1/jobs", json=DOCUMENT, params={"wait": 60})  # an equal one, of the same computation
     timer.join()
     assert (ended.status_code, ended.json()["state"]) == (200, "succeeded") and "Retry-After" not in ended.headers
     assert ended.json()["id"] != first["id"] and client.get(open_yet.headers["Location"]).json()["state"] == "succeeded"
@@ -87,7 +87,7 @@ def test_a_submission_waits_for_its_job(client, jobs, result_folder):
 def test_waiting_for_news(client, submit, jobs):
     job = submit()
     threading.Timer(0.3, jobs.begin, (job["id"], 16)).start()
-    found = client.get(f"/v1/jobs/{job['id']}", params={"wait": 20, "after": job["last_event"]}).json()
+    found = client.get(f"/v1/jobs/{job['id']}", params={"wait": 60, "after": job["last_event"]}).json()
     assert found["state"] == "running" and found["last_event"] > job["last_event"]
     problem_of(client.get(f"/v1/jobs/{job['id']}", params={"wait": 1e9}), 422, "invalid_request")
 
@@ -108,8 +108,13 @@ def test_events_are_replayed(client, submit, jobs, result_folder):
 
 def test_events_arrive_as_they_happen(client, submit, jobs, result_folder):
     job = submit()
-    threading.Timer(0.3, jobs.begin, (job["id"], 8)).start()
-    threading.Timer(0.8, jobs.complete, (job["id"], result_folder)).start()
+
+    def happen():  # in this order, however busy the machine is
+        jobs.begin(job["id"], 8)
+        time.sleep(0.5)
+        jobs.complete(job["id"], result_folder)
+
+    threading.Timer(0.3, happen).start()
     seen = events_of(client.get(f"/v1/jobs/{job['id']}/events"))
     assert [data["state"] for _, kind, data in seen if kind == "state"] == ["queued", "running", "succeeded"]
 

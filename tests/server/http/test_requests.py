@@ -90,7 +90,7 @@ def order_of(headers, chunks, *, asks=False, seconds=0.0):
     async def send(message):
         happened.append(message["type"].rpartition(".")[2])
 
-    settings = Settings(read_timeout_s=0.05, max_upload_bytes=4)
+    settings = Settings(read_timeout_s=0.05 if seconds else 60.0, max_upload_bytes=4)
     asyncio.run(BodyLayer(app, settings)(SCOPE | {"headers": headers}, receive, send))
     return happened
 

@@ -47,7 +47,7 @@ def test_a_session_that_is_refused_while_an_answer_goes_out_ends(later, monkeypa
         await asyncio.Event().wait()
 
     async def pumped():
-        async with asyncio.timeout(2):
+        async with asyncio.timeout(60):
             await view_session._pump(Page(later), Engine(), None)
 
     monkeypatch.setattr(view_session, "until_revoked", never)

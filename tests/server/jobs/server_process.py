@@ -56,10 +56,9 @@ class ServerProcess:
 
     def children(self):
         """Everything that it has started and that lives, newest last."""
-        try:
-            return psutil.Process(self.process.pid).children(recursive=True)
-        except psutil.NoSuchProcess:
+        if self.process.poll() is not None:  # its number may be another's by now
             return []
+        return psutil.Process(self.process.pid).children(recursive=True)
 
     def kill_all(self):
         """kill -9 of it and of everything that it has started."""

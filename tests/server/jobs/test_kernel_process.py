@@ -79,8 +79,12 @@ def last_long(task):
     return os.getpid()
 
 
-def begin_slowly():
-    time.sleep(3)
+TOLD = "WSRENDER_TEST_TOLD"  # a file's path
+
+
+def begin_when_told():
+    while not Path(os.environ[TOLD]).exists():
+        time.sleep(0.05)
 
 
 @contextmanager
@@ -139,21 +143,29 @@ def test_a_spare_that_was_killed_is_not_taken(spared):
     assert spared.run(TASK, print).verdict == Verdict.DONE and spared.pid != killed
 
 
-def test_a_task_that_is_stopped_while_a_process_starts_costs_no_process(spared, monkeypatch):
-    monkeypatch.setattr(steps, "describe", begin_slowly)
+@pytest.fixture
+def told(tmp_path, monkeypatch):
+    """The file that `begin_when_told` waits for."""
+    monkeypatch.setenv(TOLD, str(tmp_path / "told"))
+    return tmp_path / "told"
+
+
+def test_a_task_that_is_stopped_while_a_process_starts_costs_no_process(spared, told, monkeypatch):
+    monkeypatch.setattr(steps, "describe", begin_when_told)
     task = Task(Step.SHARD, "c0ffee", "c0ffee-1", {})
     outcomes = []
     thread = threading.Thread(target=lambda: outcomes.append(spared.run(task, print)), daemon=True)
     thread.start()
     first = wait_until(lambda: spared.pid, what="the process")
     spared.stop(task.token)
-    thread.join(2)
+    thread.join(60)
     assert outcomes == [Outcome(Verdict.STOPPED)] and not spared._child.ready.done()
+    told.touch()
     assert spared.run(TASK, print) == Outcome(Verdict.DONE, first)
 
 
-@pytest.mark.parametrize(("first", "wait_s", "why"), [(begin_slowly, 0.5, "longer than 0.5 s"), (os.abort, 60, "")])
-def test_a_process_that_does_not_start_is_worth_another_try(spared, monkeypatch, first, wait_s, why):
+@pytest.mark.parametrize(("first", "wait_s", "why"), [(begin_when_told, 0.5, "longer than 0.5 s"), (os.abort, 60, "")])
+def test_a_process_that_does_not_start_is_worth_another_try(spared, told, monkeypatch, first, wait_s, why):
     monkeypatch.setattr(steps, "describe", first)
     spared._settings = spared._settings.model_copy(update={"worker_start_s": wait_s})
     outcome = spared.run(TASK, print)

@@ -4,7 +4,7 @@ import fnmatch
 import json
 import os
 import time
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import wsrender as ws
@@ -19,6 +19,17 @@ def wait_until(condition, timeout=PATIENCE_S, what="the condition"):
         assert time.monotonic() < ends, f"{what} did not come true in {timeout} s"
         time.sleep(0.02)
     return value
+
+
+@contextmanager
+def within(seconds):
+    """The block takes so many seconds at most; on a busy machine as much longer as others get of it."""
+    began = time.monotonic()
+    yield
+    took, load = time.monotonic() - began, os.getloadavg()[0]
+    with suppress(OSError):  # the mean of a minute knows nothing yet of a load that has just come
+        load = max(load, int(Path("/proc/loadavg").read_text().split()[3].partition("/")[0]))
+    assert took <= seconds * max(1.0, load / (os.cpu_count() or 1)), f"{took:.1f} s, at a load of {load}"
 
 
 def ended(store, job, owner="ann", timeout=PATIENCE_S):
