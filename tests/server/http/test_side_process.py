@@ -16,6 +16,7 @@ from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
 from wsrender.errors import FrameNotFoundError
 
 LIMIT = 2**28  # bytes
+PATIENCE_S = 120.0
 
 
 def hold(size):
@@ -71,7 +72,7 @@ def test_a_fault_costs_its_own_request_only(process, function, arguments, timeou
         assert (fault.value.status, fault.value.code) == (409, code)
         assert await beside == 1
 
-    asyncio.run(asyncio.wait_for(both(), 30))
+    asyncio.run(asyncio.wait_for(both(), PATIENCE_S))
 
 
 def test_many_waiting_are_refused(process):
@@ -92,7 +93,7 @@ def test_others_are_answered_while_one_owner_floods(process):
         sleeps = [asyncio.ensure_future(process.run(time.sleep, 0.5, owner="ann")) for _ in range(50)]
         await asyncio.sleep(0.1)
         assert await process.run(abs, -3, owner="bob") == 3
-        assert asyncio.get_running_loop().time() - begun < 0.5 * 4
+        assert asyncio.get_running_loop().time() - begun < 0.5 * 16  # and of the flood 32 are taken
         for each in sleeps:
             each.cancel()
         told = await asyncio.gather(*sleeps, return_exceptions=True)
@@ -101,7 +102,7 @@ def test_others_are_answered_while_one_owner_floods(process):
         assert await process.run(abs, -4, owner="ann") == 4  # nothing of it is left
 
     asyncio.run(process.run(abs, 0))  # it runs
-    asyncio.run(asyncio.wait_for(flood(), 60))
+    asyncio.run(asyncio.wait_for(flood(), PATIENCE_S))
 
 
 def validated(client):
@@ -179,7 +180,7 @@ def test_one_owner_does_not_hold_the_planner_of_all(estimates):
         for each in slow:
             each.cancel()
 
-    asyncio.run(asyncio.wait_for(all_of_them(), 60))
+    asyncio.run(asyncio.wait_for(all_of_them(), PATIENCE_S))
 
 
 def test_who_asks_waits_for_a_plan_of_seconds(estimates, monkeypatch):
@@ -204,7 +205,7 @@ def test_owners_are_planned_for_in_turn(estimates, tmp_path):
         asked = [asyncio.ensure_future(ask(owner, name)) for owner in ("ann", "bob") for name in range(3)]
         await asyncio.gather(*asked)
 
-    asyncio.run(asyncio.wait_for(all_of_them(), 60))
+    asyncio.run(asyncio.wait_for(all_of_them(), PATIENCE_S))
     assert (tmp_path / "order").read_text().split() == ["ann", "bob"] * 3
 
 
@@ -221,4 +222,4 @@ def test_only_so_many_of_an_owner_wait(estimates):
         for each in mine:
             each.cancel()
 
-    asyncio.run(asyncio.wait_for(flood(), 60))
+    asyncio.run(asyncio.wait_for(flood(), PATIENCE_S))

@@ -275,13 +275,13 @@ def test_a_quota_holds_for_uploads_at_the_same_moment(store, database, monkeypat
 
     def put_together(content):
         if not hasattr(first, "gone"):  # all have looked before any row is there
-            first.gone = late.wait(20)
+            first.gone = late.wait(60)
         return put(content)
 
     monkeypatch.setattr(store.files, "put_model", put_together)
 
     def upload(number):
-        start.wait(20)
+        start.wait(60)
         try:
             return bounded.put_model("ann", bytes([number]) * 8)
         except QuotaExceeded:

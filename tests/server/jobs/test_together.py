@@ -23,7 +23,7 @@ class Gate:
 
     def __call__(self, asked):
         self.asked.append(list(asked))
-        assert self.open.wait(20)
+        assert self.open.wait(60)
         return [ValueError(each) if each < 0 else 2 * each for each in asked]
 
 
@@ -36,10 +36,10 @@ def test_who_comes_while_others_are_answered_is_answered_together_with_the_rest(
         others = [pool.submit(together.answer, number) for number in (2, 3, -4, 5)]
         wait_until(lambda: len(together._waiting) == 4, what="the others")
         gate.open.set()
-        assert first.result(20) == 2
-        assert [others[k].result(20) for k in (0, 1, 3)] == [4, 6, 10]
+        assert first.result(60) == 2
+        assert [others[k].result(60) for k in (0, 1, 3)] == [4, 6, 10]
         with pytest.raises(ValueError, match="-4"):
-            others[2].result(20)
+            others[2].result(60)
     assert [sorted(asked) for asked in gate.asked] == [[1], [-4, 2, 3, 5]]
     assert together.answer(7) == 14  # nobody is left to lead
 
@@ -50,7 +50,7 @@ def test_one_leads_at_a_time():
 
     def answer(numbers):
         asked.append(list(numbers))
-        assert turns.acquire(timeout=20)
+        assert turns.acquire(timeout=60)
         return numbers
 
     together = Together(answer)
@@ -66,7 +66,7 @@ def test_one_leads_at_a_time():
         time.sleep(0.1)
         begun = list(asked)
         turns.release(9)
-        assert [each.result(20) for each in (first, second, third)] == [1, 2, 3]
+        assert [each.result(60) for each in (first, second, third)] == [1, 2, 3]
     assert begun == [[1], [2]]
 
 
@@ -89,7 +89,7 @@ def at_once(requests):
     start = threading.Barrier(len(requests))
 
     def call(request):
-        start.wait(20)
+        start.wait(60)
         try:
             return request()
         except (QueueFull, IdempotencyConflict) as fault:

@@ -75,7 +75,7 @@ def test_the_wait_for_a_worker_is_a_setting_and_what_jobs_wait_for_is_said(tmp_p
         assert ended(service.store, job).state == "succeeded"
         assert service.waits_for("cpu") == "waiting for a free worker"
         assert config.get(LOST_WORKER) == "120.0s"
-        for address in service.dispatcher.engine.kernel_pids():
+        for address in wait_until(service.dispatcher.engine.kernel_pids, what="the worker's answer"):
             service.dispatcher.engine._client.retire_workers([address])
         wait_until(lambda: service.waits_for("cpu") != "waiting for a free worker", what="the retirement")
         assert service.waits_for("cpu") == "waiting for a worker to start"
