@@ -28,9 +28,18 @@ def align_scratch():
     ...
 
 
+_PREFETCH = """
+    const char* element = reinterpret_cast<const char*>(array.data + i);
+    for (int line = 0; line < (int)sizeof(*array.data); line += 64) __builtin_prefetch(element + line, 1);
+"""
+
+
 @factory
 def memory(dtype: Any) -> SimpleNamespace:
-    """Device functions ``load(array, i) -> value`` and ``store(array, i, value)`` of contiguous arrays of a type."""
+    """Device functions ``load(array, i) -> value`` and ``store(array, i, value)`` of contiguous arrays of a type.
+
+    And, for the CPU, ``prefetch(array, i)``: an element that is written soon comes into the cache.
+    """
     array_type = wp.array(dtype=dtype)
 
     @wp.func_native("return array.data[i];")
@@ -39,7 +48,10 @@ def memory(dtype: Any) -> SimpleNamespace:
     @wp.func_native("array.data[i] = value;")
     def store(array: array_type, i: wp.int32, value: dtype): ...
 
-    return SimpleNamespace(load=load, store=store)
+    @wp.func_native(_PREFETCH)
+    def prefetch(array: array_type, i: wp.int32): ...
+
+    return SimpleNamespace(load=load, store=store, prefetch=prefetch)
 
 
 @factory

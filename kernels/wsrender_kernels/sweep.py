@@ -676,16 +676,21 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     NARROW, HALF, LOWER_HALF, FROM_UPPER = real is wp.float32, bits(15), bits(2**15 - 1), wp.int64(2**15)
     KEY_ROW, KEY_MASK = _record_keys(shape)
     BEST, BEST_SLOT = shape.best is not None, shape.count_size + (shape.best or 0)
-    BLOCK = LANES
+    # The compiler interleaves as many rows at once; an index that is masked by LAST is not negative, as it sees.
+    PART, PARTS = min(RECORD, 8), -(-RECORD // 8)
+    BLOCK, LAST = LANES, LANES - 1
     load_record, store_record = memory(record_type).load, memory(record_type).store
     load_sums, store_sums = memory(sums_type).load, memory(sums_type).store
     load_count, store_count = memory(wp.int64).load, memory(wp.int64).store
+    prefetch_record, prefetch_sums = memory(record_type).prefetch, memory(sums_type).prefetch
+    prefetch_count = memory(wp.int64).prefetch
     # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
     # known when the kernel is compiled, and the lane loop would be compiled twice, without SIMD the second time.
     values_type = wp.types.vector(N_OUTPUTS * LANES, real)
     keys_type = wp.types.vector((REDUCED + 1) * LANES, bits)
     quanta_type = wp.types.vector(max(K, 1) * LANES, bits)
     cells_type = wp.types.vector(LANES, wp.int32)
+    samples_type = wp.types.vector(RECORD * LANES, bits)
     levers_type = wp.types.vector(3 * LANES, real)
 
     options = LONG_OPTIONS if shape.dynamic or shape.many_rows else SHORT_OPTIONS
@@ -713,6 +718,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         levers = levers_type()
         if wp.static(CONSTRAINED):
             counts = cells_type()  # of rejected samples; admitted ones count in the spare voxel
+            order = cells_type()
+            samples = samples_type()
 
         if wp.static(STAGED):
             values = staged_lanes(model, space, block, start, valid)
@@ -815,30 +822,58 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
 
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.
-                largest_count = LOWEST
-                smallest_sum = wp.int64(0)
-                for lane in range(BLOCK):
-                    largest_count = wp.max(largest_count, load_record(to.records, cells[lane])[0])
-                    if wp.static(SUMS):
-                        smallest_sum = wp.min(smallest_sum, load_sums(to.sums, cells[lane])[0])
+                if wp.static(CONSTRAINED):
+                    for lane in range(BLOCK):
+                        prefetch_record(to.records, cells[lane])
+                        if wp.static(SUMS):
+                            prefetch_sums(to.sums, cells[lane])
+                        prefetch_count(to.rejections, counts[lane])
+                    for lane in range(BLOCK):
+                        keys[LOWEST_ROW + lane] = LOWEST
+                    # Sample by sample, as records are: to gather each by itself takes longer.
+                    for part in range(PARTS):
+                        for lane in range(BLOCK):
+                            for k in range(PART):
+                                key = keys[KEY_ROW[part * PART + k] * BLOCK + lane] ^ KEY_MASK[part * PART + k]
+                                samples[(part * BLOCK + lane) * PART + k] = key
+                else:
+                    largest_count = LOWEST
+                    smallest_sum = wp.int64(0)
+                    for lane in range(BLOCK):
+                        largest_count = wp.max(largest_count, load_record(to.records, cells[lane])[0])
+                        if wp.static(SUMS):
+                            smallest_sum = wp.min(smallest_sum, load_sums(to.sums, cells[lane])[0])
+                    # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not
+                    # know: it would drop the loop above.
+                    lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
+                    for lane in range(BLOCK):
+                        keys[LOWEST_ROW + lane] = lowest_key
+                ends = valid
+                if wp.static(CONSTRAINED):
+                    # Admitted ones from the front, rejected ones from the back: branches would often be mispredicted.
+                    ends = wp.int32(0)
+                    begins = valid
+                    for lane in range(valid):
+                        order[ends & LAST] = lane
+                        order[(begins - 1) & LAST] = lane
+                        step = wp.where(values[REASON + (lane & LAST)] == ADMITTED, 1, 0)
+                        ends += step
+                        begins += step - 1
+                    for place in range(ends, valid):
+                        counter = counts[order[place & LAST] & LAST]
+                        store_count(to.rejections, counter, load_count(to.rejections, counter) + wp.int64(1))
+                for place in range(ends):
+                    lane = place
                     if wp.static(CONSTRAINED):
-                        smallest_sum = wp.min(smallest_sum, load_count(to.rejections, counts[lane]))
-                # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know:
-                # it would drop the loop above.
-                lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
-                for lane in range(BLOCK):
-                    keys[LOWEST_ROW + lane] = lowest_key
-                for lane in range(valid):
+                        lane = order[place & LAST] & LAST
                     voxel = cells[lane]
-                    if wp.static(CONSTRAINED):  # noqa: SIM102
-                        if voxel == grid.spare:
-                            number = load_count(to.rejections, counts[lane])
-                            store_count(to.rejections, counts[lane], number + wp.int64(1))
-                            continue
                     # Every slot is read and compared alike, count and padding against LOWEST: one SIMD operation.
                     sample = record_type()
                     for k in range(RECORD):
-                        sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
+                        if wp.static(CONSTRAINED):
+                            sample[k] = samples[(k // PART * BLOCK + lane) * PART + k % PART]
+                        else:
+                            sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
                     record = load_record(to.records, voxel)
                     if wp.static(BEST):
                         number = wide(level) * to.level_stride + (start + wide(lane)) * to.weight

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wsrender_kernels.voxels import decode_extreme
 
 import wsrender as ws
 from wsrender.documents.constraints import Constraints
@@ -11,6 +12,7 @@ from wsrender.engine import SweepPlan, configurations, devices_of, evaluate_pose
 from wsrender.engine.rows import evaluate_samples
 from wsrender.engine.sums import scales_of
 from wsrender.errors import DocumentError, InputError
+from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.pipeline.constraints import registry
 from wsrender.pipeline.constraints.constraint import Constraint, in_order
 from wsrender.pipeline.constraints.leg_distance import LegDistance
@@ -29,6 +31,12 @@ SHAPES = {
 }
 BLOCK = LatticeBlock(0.1, (-20, -20, -20), (40, 40, 40))
 COUNT = 1 << 14
+RECORDS = (
+    (("manipulability",), frozenset({"maximum"})),
+    (KINEMATIC, frozenset({"maximum"})),
+    (KINEMATIC, frozenset({"maximum", "minimum", "mean"})),
+    (KINEMATIC + DYNAMIC, frozenset({"maximum", "minimum"})),
+)
 
 
 @pytest.fixture
@@ -87,6 +95,41 @@ def test_values_are_those_of_admitted_samples_alone(device):
     values = table[3, admitted]
     assert found.maximum[3] == values.max() and found.minimum[3] == values.min()
     assert found.totals[0] == np.round(values * scales_of(each)[0]).astype(np.int64).sum() == found.sums.sum()
+
+
+@pytest.mark.parametrize("names, statistics", RECORDS, ids=("4", "8", "16", "32"))
+def test_voxels_hold_admitted_samples_alone(names, statistics, precision, device):
+    """Records of several sizes in integers of the precision, by a table of the same samples."""
+    robot = ws.load_robot("ur5e")
+    region = RegionConstraint(half_space=((0, 0, 0.3), (0, 0, 1)))
+    each = Pipeline(
+        Evaluation(robot.chain, names, (0, 1, 2)),
+        plan_sampling(robot.chain, ws.Random(4000)),  # no multiple of a block
+        *((region,), BLOCK, statistics),
+        bounds=(1e4,) * len(names),
+        kept_rows=frozenset(),
+        precision=precision,
+    )
+    found = sweep(each, 0, 4000, devices_of(device))
+    table = np.concatenate([found.rows[first] for first in sorted(found.rows)], axis=1)
+    cells = np.ravel_multi_index((np.floor((table[:3].T + each.origin) / 0.1).astype(int) + 20).T, BLOCK.shape)
+    admitted = table[-1] == 0
+    occupied, place = np.unique(cells[admitted], return_inverse=True)
+    assert np.array_equal(found.cells, occupied) and np.array_equal(found.count, np.bincount(place))
+    assert found.blocked_cells.tolist() == np.unique(cells[~admitted]).tolist()
+    assert found.blocked[:, 0].tolist() == np.unique(cells[~admitted], return_counts=True)[1].tolist()
+    values = table[3 : 3 + len(names), admitted]
+    records = iter(np.split(found.records, found.records.shape[1] // len(names), axis=1))
+    for name, largest, worst in (("maximum", np.maximum, -np.inf), ("minimum", np.minimum, np.inf)):
+        if name in statistics:
+            extreme = np.full((len(names), len(occupied)), worst)
+            largest.at(extreme, (slice(None), place), values)
+            assert np.array_equal(decode_extreme(next(records), name == "minimum"), extreme.T), name
+    if "mean" in statistics:
+        quanta = np.rint(values * scales_of(each)[:, None].astype(values.dtype)).astype(np.int64)
+        sums = np.zeros((len(occupied), len(names)), np.int64)
+        np.add.at(sums, place, quanta.T)
+        assert np.array_equal(found.sums, sums)
 
 
 @pytest.mark.parametrize("constraint", ("region", "elbow_up", "trailing"))
