@@ -2,7 +2,8 @@
 
     python benchmarks/collisions.py [--robots ur5e …, or PATH@TIP] [--repeats 5] [--exclude a,b] [--device cuda]
 
-Labels are exact: sampling, kinematics, filter, narrow phase and MuJoCo for what is open, in CPU seconds of the thread.
+Labels are exact: sampling, kinematics, filter, narrow phase and MuJoCo for what is open, in CPU seconds of the thread;
+sweeps on a CPU in those of the process.
 MuJoCo's loop (mujoco_loop.c, compiled here with cc against the wheel's headers) takes kinematics and collisions; coal's
 (coal_loop.cpp; packages coal and cmeel-eigen) MuJoCo's kinematics, and of the same shapes the same pairs until one
 collides, less those whose balls are apart. All three label the same samples. Ratios are of the least times of the
@@ -230,9 +231,9 @@ def report(robot: ws.Robot, loop: Labels, coal: ctypes.CDLL | str, repeats: int)
     seconds = dict.fromkeys(swept, np.inf)
     for _ in range(repeats + 1):
         for name, case in swept.items():
-            started = time.perf_counter()
+            started = time.process_time()
             case()
-            seconds[name] = min(seconds[name], time.perf_counter() - started)
+            seconds[name] = min(seconds[name], time.process_time() - started)
     for name, each in seconds.items():
         print(
             f"  sweep, {name}: {SWEPT / each / 1e6:.2f} M/s, {seconds['unfiltered'] / each:.2f} of the unfiltered rate"

@@ -44,6 +44,7 @@ from wsrender.volume.lattice import LatticeBlock
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 LABELLED_BYTES_CPU, LABELLED_BYTES_CUDA = 1 << 26, 1 << 31  # of labels and lists of what is open, of one worker
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
+LABELLED_PER_THREAD = 4  # chunks whose samples are labelled: of each MuJoCo settles a few samples, which takes 1 ms
 LOOK_S = 0.1  # between two looks at what is done
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED, VOXELS_FETCHED = 1 << 14, 1 << 23  # at a time
@@ -131,7 +132,7 @@ def sweep(
         workers = devices * thread_count(threads)
         if not pipeline.evaluation.on_host:
             shape = replace(shape, shared=shared_coordinates(plan.structure.evaluated))
-    chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers), devices[0])
+    chunk = _chunk_size(plan, chunk_size or _fair_share(plan, count, workers), devices[0])
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None]
     if pipeline.block is not None:
@@ -189,11 +190,12 @@ def _combined(accumulators: list["Accumulator"], pool: ThreadPoolExecutor) -> "A
     return first
 
 
-def _fair_share(count: int, workers: list[wp.Device]) -> int:
+def _fair_share(plan: SweepPlan, count: int, workers: list[wp.Device]) -> int:
     """Chunk size (samples) that keeps all workers busy to the end."""
     if workers[0].is_cuda:
         return CHUNK_CUDA
-    return min(CHUNK_CPU, max(CHUNK_LEAST, count // (CHUNKS_PER_THREAD * len(workers))))
+    per_thread = LABELLED_PER_THREAD if plan.shape.labelled else CHUNKS_PER_THREAD
+    return min(CHUNK_CPU, max(CHUNK_LEAST, count // (per_thread * len(workers))))
 
 
 def _chunk_size(plan: SweepPlan, size: int, device: wp.Device) -> int:
@@ -218,7 +220,7 @@ def label_bytes(plan: SweepPlan, devices: list[wp.Device]) -> float:
     from wsrender.engine.collision import bytes_per_sample
 
     count = pipeline.sampling.count // plan.structure.multiplicity
-    chunk = _chunk_size(plan, _fair_share(count, devices), devices[0])
+    chunk = _chunk_size(plan, _fair_share(plan, count, devices), devices[0])
     return float(min(len(devices), -(-count // chunk)) * chunk * bytes_per_sample(pipeline))
 
 
