@@ -44,11 +44,11 @@ def shaped(model):
 
 def links_at(model, joint):
     """Bodies with shapes that a joint joins, (before, behind); those without shapes are passed over."""
-    own, body = shaped(model), model.jnt_bodyid[joint]
-    parent, behind = model.body_parentid[body], [body]
+    own, body = shaped(model), int(model.jnt_bodyid[joint])
+    parent, behind = int(model.body_parentid[body]), [body]
     while parent and not len(own[parent]):
-        parent = model.body_parentid[parent]
-    beside = np.flatnonzero((model.body_parentid == 0) & (model.body_jntnum == 0))  # the base
+        parent = int(model.body_parentid[parent])
+    beside = [b for b in own if model.body_parentid[b] == 0 and not model.body_jntnum[b]]  # the base
     before = [parent] if parent else [b for b in beside if len(own[b])]
     while behind and not any(len(own[b]) for b in behind):
         behind = [b for b in range(1, model.nbody) if model.body_parentid[b] in behind]
