@@ -163,6 +163,23 @@ def test_the_bar_of_counts_has_whole_ticks(views, most):
     assert views.page.evaluate(ticks, [1.2, 1.8, "linear", 5]) == [1.2, 1.8]
 
 
+def test_a_bar_has_two_ticks_at_least_within_its_range(views):
+    """Round ones, in a linear range of whatever width, also on the narrow bars of a telephone."""
+    ticks = """([low, high, count]) => page.scaleOf({label: "n", unit: ""}, [low, high], null,
+      {low, high, scale: "linear", clipped: false}, "viridis").ticks(count)"""
+    views.page.evaluate("async () => { window.page = await import('/viewer/viewer.js'); }")
+    rng = np.random.default_rng(11)
+    for low, width in zip(rng.uniform(-1, 1, 200), 10.0 ** rng.uniform(-3, 3, 200), strict=True):
+        for count in (3, 5):
+            found = np.array(views.page.evaluate(ticks, [low, low + width, count]))
+            assert 2 <= len(found) <= 2 * count, (low, width, found)
+            assert low - 1e-9 * width <= found[0] and found[-1] <= low + (1 + 1e-9) * width, (low, width, found)
+            steps = np.diff(found)
+            assert np.allclose(steps, steps[0])
+            leading = steps[0] / 10.0 ** np.floor(np.log10(steps[0]) + 1e-9)
+            assert np.abs(np.array([1, 2, 2.5, 5, 10]) - leading).min() < 1e-6, (low, width, found)
+
+
 def measured():
     """Values by what is special about them."""
     rng = np.random.default_rng(9)

@@ -60,10 +60,14 @@ export class ColorScale {
   get below(): boolean { return this.data[0] < this.low - 1e-9 * (this.high - this.low); }
   get above(): boolean { return this.data[1] > this.high + 1e-9 * (this.high - this.low); }
   get title(): string { return titled(this); }
-  /** Round values within the range, about `count`; of whole values whole ones. */
+  /** Round values within the range, about `count`, two at least; of whole values whole ones, one at least. */
   ticks(count = 5): number[] {
     if (this.low === this.high) return [this.low];
-    const found = this.rounded(count), kept = this.whole ? found.filter((v) => Math.abs(v - Math.round(v)) < 1e-9) : found;
+    let kept: number[] = [];
+    for (let n = count; kept.length < 2 && n <= 4 * count; n++) {
+      const found = this.rounded(n);
+      kept = this.whole ? found.filter((v) => Math.abs(v - Math.round(v)) < 1e-9) : found;
+    }
     return kept.length ? kept : [this.low, this.high];
   }
   private rounded(count: number): number[] {
