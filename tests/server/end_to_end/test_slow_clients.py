@@ -10,9 +10,10 @@ from websockets.sync.client import connect
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
-from tests.server.jobs.waiting import wait_until
+from tests.server.jobs.waiting import wait_until, within
 
 TIMEOUT_S, MOST = 1.5, 40
+PATIENCE_S = 60.0
 HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
 
 
@@ -31,7 +32,7 @@ def opened(server):
     with ExitStack() as sockets:
 
         def send(data):
-            connection = socket.create_connection(("127.0.0.1", int(server.url.rpartition(":")[2])), timeout=20)
+            connection = socket.create_connection(("127.0.0.1", int(server.url.rpartition(":")[2])), timeout=PATIENCE_S)
             connection.sendall(data)
             return sockets.enter_context(connection)
 
@@ -68,7 +69,7 @@ def test_half_requests_end_while_others_are_answered(server, opened):
             said = end_of(connection)
             assert halves[name][1] in said if halves[name][1] else said == b"", (name, said)
     assert b" 408 " in end_of(answered)
-    assert TIMEOUT_S <= time.monotonic() - started < TIMEOUT_S + 8
+    assert TIMEOUT_S <= time.monotonic() - started < PATIENCE_S
     assert b'"code":"request_timeout"' in end_of(opened(HEAD + b"Content-Length: 99\r\n\r\n{"))
 
 
@@ -89,14 +90,13 @@ def test_answers_that_nobody_takes_in_keep_nobody_waiting(server, opened):
     connections = [opened(asked) for _ in range(MOST - 5)]
     with ws.Client(server.url) as client:
         for _ in range(20):
-            began = time.monotonic()
-            assert list(client.jobs()) == []
-            assert time.monotonic() - began < 5  # of a busy machine
-        whole = httpx2.get(f"{server.url}/viewer/viewer.js", timeout=10).content
+            with within(2):
+                assert list(client.jobs()) == []
+        whole = httpx2.get(f"{server.url}/viewer/viewer.js", timeout=PATIENCE_S).content
     assert len(connections[0].recv(1 << 20)) > 0 and len(whole) > 500_000  # whose answers had begun
     for connection in connections:
         connection.close()
-    wait_until(lambda: httpx2.get(f"{server.url}/healthz", timeout=5).status_code == 200)
+    wait_until(lambda: httpx2.get(f"{server.url}/healthz", timeout=PATIENCE_S).status_code == 200)
 
 
 def test_a_client_has_so_many_connections(opened):
@@ -106,7 +106,7 @@ def test_a_client_has_so_many_connections(opened):
     for connection in connections[:3]:
         connection.close()
     # Whether the server has noticed the ends before the next comes is up to it.
-    wait_until(lambda: b" 200 " in opened(request + b"\r\n").recv(1 << 16), 20, "the place of one that has left")
+    wait_until(lambda: b" 200 " in opened(request + b"\r\n").recv(1 << 16), PATIENCE_S, "a place")
     for connection in connections[3:]:
         connection.sendall(b"\r\n")
         assert b" 200 " in connection.recv(1 << 16)
@@ -118,9 +118,9 @@ def test_websockets_are_connections_too(server, opened):
     url = f"{server.url.replace('http', 'ws')}/v1/robots:view/session"
     with ExitStack() as sockets:
         for _ in range(MOST):
-            sockets.enter_context(connect(url, open_timeout=20))
+            sockets.enter_context(connect(url, open_timeout=PATIENCE_S))
         assert b" 429 " in end_of(opened(b""))
-    wait_until(lambda: b" 200 " in opened(request).recv(1 << 16), 20, "the place of one that has left")
+    wait_until(lambda: b" 200 " in opened(request).recv(1 << 16), PATIENCE_S, "a place")
     with ExitStack() as sockets:
         for _ in range(MOST // 2):
-            sockets.enter_context(connect(url, open_timeout=20))
+            sockets.enter_context(connect(url, open_timeout=PATIENCE_S))
