@@ -78,6 +78,26 @@ def test_the_model_is_the_one_that_no_other_includes_or_is_named():
         load_archive(both, entry="none.xml")
 
 
+def test_a_package_of_ros_is_a_folder_or_a_zip(tmp_path):
+    """Its package.xml is no model, and says which package the folder is, whatever that is called."""
+    files = {
+        "package.xml": b"<package format='3'><name>arm_parts</name></package>",
+        "urdf/r.urdf": URDF.format("package://arm_parts/meshes/a.stl").encode(),
+        "meshes/a.stl": BRICK,
+    }
+    folder = unpacked(tmp_path / "my_clone", files)
+    within = cases.zipped({f"deep/{name}": content for name, content in files.items()})
+    for robot in (ws.load_robot(folder), load_archive(cases.zipped(files)), load_archive(within)):
+        assert robot.chain.n == 1 and len(robot.bodies.shapes) == 1
+    assert archives.Archive(cases.zipped(files), None, "path").read("package://arm_parts/../x/meshes/a.stl") is None
+    broken = cases.zipped(files | {"package.xml": b"<package"})
+    with pytest.raises(ModelError, match=r"'package://arm_parts/meshes/a.stl' is not there"):
+        _ = load_archive(broken).bodies
+    (folder / "urdf/r.urdf").rename(folder / "urdf/r.urdf.xacro")
+    with pytest.raises(ModelError, match=r"no model: .* but package.xml; a xacro file is loaded by its own path"):
+        ws.load_robot(folder)
+
+
 def test_an_empty_folder_and_a_file_that_is_no_zip(tmp_path):
     with pytest.raises(ModelError, match="the archive has no model"):
         ws.load_robot(tmp_path)

@@ -5,6 +5,8 @@ import posixpath
 import re
 import stat
 import zipfile
+from contextlib import suppress
+from functools import cached_property
 from io import BytesIO
 from pathlib import Path, PurePosixPath
 from xml.etree.ElementTree import Element
@@ -15,6 +17,8 @@ from wsrender.robots.mesh_files import ADDRESS, MAX_MESH_BYTES
 
 SUFFIX = ".zip"
 MODEL_FILES = (".xml", ".mjcf", ".urdf", ".sdf")  # what a model in an archive ends in
+PACKAGE = "package.xml"  # what says that a folder is a package of ROS, and is no model
+MAX_PACKAGE_BYTES = 2**16
 OTHER_FILES = (
     ".stl",
     ".obj",
@@ -95,7 +99,22 @@ class Archive:
             return [posixpath.join(posixpath.dirname(self.entry), name)]
         package, _, rest = name[scheme.end() :].partition("/")
         folders = {str(folder) for file in self._files for folder in PurePosixPath(file).parents}
-        return [f"{folder}/{rest}" for folder in sorted(folders) if posixpath.basename(folder) == package]
+        named = sorted(folder for folder in folders if posixpath.basename(folder) == package)
+        if package in self._packages:
+            named.append(self._packages[package])
+        return [posixpath.join(folder, rest) for folder in named]
+
+    @cached_property
+    def _packages(self) -> dict[str, str]:
+        """Folders whose package.xml says that they are a package of ROS, by its name."""
+        found: dict[str, str] = {}
+        manifests = sorted(name for name in self._files if posixpath.basename(name) == PACKAGE)
+        for name in manifests[:MOST_LOOKED_AT]:
+            if self._files[name].file_size <= MAX_PACKAGE_BYTES:
+                with suppress(ModelError):
+                    package = (xml_source.parse(self._content(name)).findtext("name") or "").strip()
+                    found.setdefault(package, posixpath.dirname(name))
+        return found
 
     def _content(self, name: str) -> bytes:
         try:
@@ -104,7 +123,7 @@ class Archive:
             raise ModelError(self._field, f"{name} cannot be unpacked: {error}") from error
 
     def _entry(self, entry: str | None) -> str:
-        models = sorted(name for name in self._files if name.lower().endswith(MODEL_FILES))
+        models = sorted(filter(_is_model, self._files))
         if entry is not None:
             if entry not in self._files:
                 raise InputError("entry", f"{entry!r} is not in the archive; its models: {_listed(models)}")
@@ -147,9 +166,14 @@ def check(content: bytes, field: str) -> zipfile.ZipFile:
         seen.add(name)
     if (size := sum(each.file_size for each in archive.infolist())) > MAX_ARCHIVE_BYTES:
         raise ModelError(field, f"the archive unpacks to {size} bytes; at most {MAX_ARCHIVE_BYTES} are allowed")
-    if not any(name.lower().endswith(MODEL_FILES) for name in archive.namelist()):
-        raise ModelError(field, f"the archive has no model: no file that ends in {', '.join(MODEL_FILES)}")
+    if not any(map(_is_model, archive.namelist())):
+        others = f"{', '.join(MODEL_FILES)} but {PACKAGE}; a xacro file is loaded by its own path"
+        raise ModelError(field, f"the archive has no model: no file that ends in {others}")
     return archive
+
+
+def _is_model(name: str) -> bool:
+    return name.lower().endswith(MODEL_FILES) and posixpath.basename(name) != PACKAGE
 
 
 def _fault(info: zipfile.ZipInfo) -> str:

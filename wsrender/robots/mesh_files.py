@@ -29,6 +29,16 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("at
 ADDRESS = re.compile(r"(package|model|file)://")
 
 
+def not_there(name: str) -> str:
+    """What is said of a file that a model names and that is not there; of one in a package, how that is found."""
+    said, scheme = f"the file {name!r} is not there, or is too large", ADDRESS.match(name)
+    if scheme is None or scheme[1] != "package":
+        return said
+    package = name[scheme.end() :].partition("/")[0]
+    places = "above a model that is loaded by its path, in ROS_PACKAGE_PATH and AMENT_PREFIX_PATH"
+    return f'{said}: packages are found {places}, or name its folder by packages={{"{package}": …}}'
+
+
 def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
     """Reads meshes from a mapping of file names, as the model writes them, to bytes; never from disk."""
     by_last_part = {Path(name).name: content for name, content in assets.items()}

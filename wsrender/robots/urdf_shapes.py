@@ -5,7 +5,7 @@ import numpy as np
 
 from wsrender.errors import ModelError
 from wsrender.robots.compiled_model import Purpose
-from wsrender.robots.mesh_files import ReadMesh, triangles
+from wsrender.robots.mesh_files import ReadMesh, not_there, triangles
 from wsrender.robots.urdf import Link, UrdfShape
 from wsrender.robots.xml_source import numbers
 
@@ -71,7 +71,7 @@ def _added(
     if shape.kind != "mesh":
         raise ModelError(field, f"{where} is of no known kind; allowed: {', '.join((*PRIMITIVES, 'mesh'))}")
     if (content := read_mesh(shape.file)) is None:
-        raise ModelError(field, f"{where}: the file {shape.file!r} is not there, or is too large")
+        raise ModelError(field, f"{where}: {not_there(shape.file)}")
     scale = numbers(shape.scale or "1 1 1", 3, field, f"{where}: scale")
     vertices, faces = triangles(content, shape.file, field)
     if len(vertices) < FEWEST_VERTICES:

@@ -213,8 +213,12 @@ def test_determinants_have_zero_in_the_middle_in_every_view(block):
     signed = replace(
         block, volume=VolumeData(0.1, volume.first_voxel, volume.count, {"center": {"determinant_A": values}})
     )
-    with pytest.raises(InputError, match=r"share of the maximum, and that of Determinant A is -0\.5, below 0"):
+    with pytest.raises(InputError, match=r"share of the maximum, and that of Determinant A is -0\.5, not above 0"):
         VIEWS["isosurface"]([signed], CHOICE)
+    zero = {"center": {"determinant_A": np.where(volume.count > 0, 0.0, np.nan)}}
+    singular = replace(block, volume=VolumeData(0.1, volume.first_voxel, volume.count, zero))
+    with pytest.raises(InputError, match=r"that of Determinant A is 0, not above 0"):
+        VIEWS["isosurface"]([singular], CHOICE)
     for view in ("solid", "volume", "slice"):
         scale = VIEWS[view]([signed], CHOICE).scale
         assert scale.diverging and scale.limits == pytest.approx((-1.2, 1.2))

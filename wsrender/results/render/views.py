@@ -170,10 +170,10 @@ def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for voxels, shown in zip(volumes, fields, strict=True):
         values = shown.dense()
         largest = float(np.nanmax(values))
-        if largest < 0:
+        if largest <= 0:
             raise InputError(
                 "index",
-                f"an iso-surface is a share of the maximum, and that of {shown.label} is {largest:.3g}, below 0",
+                f"an iso-surface is a share of the maximum, and that of {shown.label} is {largest:.3g}, not above 0",
             )
         level = choice.threshold * largest
         values = np.where(voxels.occupied, values, np.nan)
