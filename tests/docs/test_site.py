@@ -111,12 +111,16 @@ def test_names_of_functions_in_formulas_stand_apart(folder):
     assert re.search(r"<mn>338</mn>\s*<mspace[^>]*/><mi>arccos</mi>", page)
 
 
-# Elements of the article whose content is cut off, or goes beyond their side; on wide screens code must fit, too.
-CUT = """wide => [...document.querySelectorAll(".bd-article *")].filter(each => {
-  const hidden = ["hidden", "clip"].includes(getComputedStyle(each).overflowX);
+# Elements whose content is cut off, or goes beyond their side; on wide screens code must fit, too.
+CUT = """wide => {
+  const all = document.querySelectorAll(":is(.bd-article, .prev-next-area, .bd-sidebar-secondary) *");
   const fits = wide ? /^(H[1-6]|P|LI|DT|PRE)$/ : /^(H[1-6]|P|LI|DT)$/;
-  return (hidden || fits.test(each.tagName)) && each.clientWidth > 1 && each.scrollWidth > each.clientWidth + 2;
-}).map(each => each.outerHTML.slice(0, 80))"""
+  return [...all].filter(each => {
+    const hidden = ["hidden", "clip"].includes(getComputedStyle(each).overflowX);
+    const whole = hidden || fits.test(each.tagName) || each.matches(".nav-link");
+    return whole && each.clientWidth > 1 && each.scrollWidth > each.clientWidth + 2;
+  }).map(each => each.outerHTML.slice(0, 80));
+}"""
 
 
 # Pictures of several planes whose letters, of 8 points in 13 inches, would be too small to be read.

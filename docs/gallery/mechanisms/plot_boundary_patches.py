@@ -16,4 +16,4 @@ surface.plot.patches()
 
 # %%
 
-surface.to_pandas("patches").head(8)
+surface.to_pandas("patches")[["kind", "generated_by", "method", "radius_m"]]

@@ -8,7 +8,8 @@ Lines and arcs, each with the joints at their limits that draw it. DXF and SVG a
 import wsrender as ws
 
 boundary = ws.exact_boundary("scara", locked={"joint4": 0.0})
-print(f"area {boundary.area:.6f} m², {len(boundary.segments)} segments")
+kinds = [segment.kind for loop in boundary.segments for segment in loop]
+print(f"area {boundary.area:.6f} m², {kinds.count('arc')} arcs and {kinds.count('line')} lines")
 
 # %%
 # Beside it what a Monte Carlo sample finds:

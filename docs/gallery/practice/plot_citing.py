@@ -21,3 +21,9 @@ print(
     f"The reachable {headline['quantity']} is {headline['value']:.2f} m³ "
     f"(95 % interval {headline['ci95'][0]:.2f} to {headline['ci95'][1]:.2f}), wsrender {ws.__version__}."
 )
+
+# %%
+# Pictures of your results are yours. Their titles say robot and sampling:
+
+# Picture: Slice at y = 0 through the workspace, coloured by manipulability, with robot and number of samples above.
+result.plot.slice(y=0.0)

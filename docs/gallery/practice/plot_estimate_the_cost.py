@@ -9,6 +9,7 @@ A server says the same of a job document, and checks its limits against it.
 import tempfile
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
@@ -31,3 +32,15 @@ with LocalServer(Path(tempfile.mkdtemp())) as server, ws.Client(server.url) as c
     estimate = client.estimate(job)
 megabytes = estimate["memory_bytes"] / 1e6
 print(f"{estimate['samples']:,.0f} samples, {megabytes:.1f} MB of memory, {estimate['seconds']:.1f} s")
+
+# %%
+# More samples, more time:
+
+samples = [1 << k for k in range(16, 31, 2)]
+estimates = [ws.run.plan(job | {"sampling": {"method": "sobol", "count": count}}).estimate for count in samples]
+figure, axes = plt.subplots(figsize=(6, 3.4), layout="constrained")
+axes.loglog(samples, [each["seconds"] for each in estimates], "o-")
+axes.set(xlabel="samples", ylabel="estimated time [s]")
+
+# Picture: The estimated seconds over the number of samples: level where few are drawn, then in proportion to them.
+figure

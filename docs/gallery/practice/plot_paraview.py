@@ -25,3 +25,9 @@ for path in sorted(each for each in folder.rglob("*") if each.is_file()):
 with h5py.File(folder / "volume.vtkhdf") as file:
     for name, data in file["VTKHDF/CellData"].items():
         print(name, data.shape, data.dtype)
+
+# %%
+# ParaView shows those cells that hold a sample (*Threshold* by ``count``, from 1), and cuts them by *Slice*; so does
+
+# Picture: Slice at y = 0 of the largest manipulability in each voxel, as ParaView would show it.
+result.plot.slice(y=0.0)

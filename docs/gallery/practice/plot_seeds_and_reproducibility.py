@@ -2,9 +2,8 @@
 Is the result the same again, and what fixes the seed?
 ======================================================
 
-A sample is a pure function of its number and the seed: integers are summed, so that threads, chunks and shards change
-no
-bit.
+A sample is a pure function of its number and the seed: integers are summed, so that threads, chunks and shards
+change no bit.
 """
 
 import numpy as np
@@ -31,3 +30,9 @@ print("another seed:           ", np.array_equal(counts(first), counts(other)))
 job = first.document["job"]
 print(job["sampling"])
 print("run again:", np.array_equal(counts(first), counts(ws.execute(job))))
+
+# %%
+# Another seed is another sample of the same: nearly all voxels agree but for those at the border.
+
+# Picture: Slice at y = 0 of the largest manipulability in each voxel: the same in each run, to the bit.
+first.plot.slice(y=0.0)

@@ -16,9 +16,8 @@ print("gripper", gripping.forward_kinematics(q)[0, :3, 3].round(3))
 # %%
 # A longer tool reaches farther.
 
-results = ws.robot_comparison([bare, gripping], ws.Sobol(1 << 17), indices=["manipulability"], names=["bare",
-"gripper"],
-                              device="cpu")  # fmt: skip
+common = {"indices": ["manipulability"], "device": "cpu"}
+results = ws.robot_comparison([bare, gripping], ws.Sobol(1 << 17), names=["bare", "gripper"], **common)
 print(results.summary())
 
 # Picture: Planes through both workspaces, one arm a row; with the gripper it is larger, and moves better far out.

@@ -24,4 +24,4 @@ result.plot.targets()
 # %%
 # The table behind it, one row per target:
 
-result.to_pandas("targets").head(8)
+result.to_pandas("targets")[["position_0", "position_1", "position_2", "label", "reason"]].head(8)
