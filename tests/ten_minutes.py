@@ -4,6 +4,7 @@ python tests/ten_minutes.py FOLDER   # installs there, as the page says, and spe
 """
 
 import os
+import resource
 import subprocess
 import sys
 import time
@@ -116,9 +117,19 @@ def _fresh() -> Path:
 def _spent(part: str, robot: str | None = None) -> dict[str, Any]:
     urdf = urdf_of(robot) if robot else None
     with TemporaryDirectory() as folder:
-        programs, start = _fresh(), time.perf_counter()
-        printed = spend(part, programs, Path(folder), urdf)
-        return {"seconds": round(time.perf_counter() - start, 1), "lines": printed.count("\n")}
+        programs, start, worked = _fresh(), time.perf_counter(), _cpu_seconds()
+        try:
+            lines = spend(part, programs, Path(folder), urdf).count("\n")
+        except subprocess.TimeoutExpired:
+            lines = None
+        seconds, worked = time.perf_counter() - start, _cpu_seconds() - worked
+        return {"seconds": round(seconds, 1), "cpu_seconds": round(worked, 1), "lines": lines}
+
+
+def _cpu_seconds() -> float:
+    """Of all processes that have been waited for: what a machine that has other work takes longer for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 PARTS: dict[str, Callable[[], dict[str, Any]]] = {
@@ -130,8 +141,9 @@ TOO_LONG = tuple(PARTS)  # a fresh environment for each choice; the stage "wheel
 
 
 def violations(figures: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """Minutes that are more than ten."""
-    return [f"{part}: {found['seconds']} s" for part, found in figures.items() if found["seconds"] > LONGEST_S]
+    """Minutes that are more than ten: what had not ended then is among them."""
+    late = {part: found for part, found in figures.items() if found["lines"] is None or found["seconds"] > LONGEST_S}
+    return [f"{part}: {found['seconds']} s, {found['cpu_seconds']} s of work" for part, found in late.items()]
 
 
 def main() -> int:

@@ -105,3 +105,14 @@ def test_robots_of_others_are_where_they_are_said_to_be():
     pytest.importorskip("pybullet_data", reason="needs the extra test-models")
     for name in ten_minutes.URDFS:
         assert ten_minutes.urdf_of(name).is_file()
+
+
+def test_what_has_not_ended_in_ten_minutes_is_told(monkeypatch):
+    """As a part that took too long, not as a fault of the long run."""
+    monkeypatch.setattr(ten_minutes, "LONGEST_S", 0.01)
+    monkeypatch.setattr(ten_minutes, "_fresh", lambda: Path(sys.executable).parent)
+    found = ten_minutes.PARTS["mechanism"]()
+    assert found["lines"] is None and found["seconds"] >= 0.01 and found["cpu_seconds"] >= 0
+    monkeypatch.undo()
+    (told,) = ten_minutes.violations({"mechanism": found, "cell": {"seconds": 599.0, "cpu_seconds": 9.0, "lines": 3}})
+    assert told.startswith("mechanism: ")
