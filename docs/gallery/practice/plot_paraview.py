@@ -27,7 +27,7 @@ with h5py.File(folder / "volume.vtkhdf") as file:
         print(name, data.shape, data.dtype)
 
 # %%
-# ParaView shows those cells that hold a sample (*Threshold* by ``count``, from 1), and cuts them by *Slice*; so does
+# ParaView shows those cells that hold a sample (*Threshold* by ``count``, from 1), and cuts them by *Slice*, as here:
 
 # Picture: Slice at y = 0 of the largest manipulability in each voxel, as ParaView would show it.
 result.plot.slice(y=0.0)

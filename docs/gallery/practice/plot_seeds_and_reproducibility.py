@@ -32,7 +32,7 @@ print(job["sampling"])
 print("run again:", np.array_equal(counts(first), counts(ws.execute(job))))
 
 # %%
-# Another seed is another sample of the same: nearly all voxels agree but for those at the border.
+# Its pictures are the same, too:
 
 # Picture: Slice at y = 0 of the largest manipulability in each voxel: the same in each run, to the bit.
 first.plot.slice(y=0.0)
