@@ -3,6 +3,7 @@
 python tests/ten_minutes.py FOLDER   # installs there, as the page says, and spends the minutes of all three
 """
 
+import atexit
 import os
 import resource
 import subprocess
@@ -12,7 +13,7 @@ from collections.abc import Callable, Mapping
 from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copytree, ignore_patterns, rmtree
 from tempfile import TemporaryDirectory, mkdtemp
 from typing import Any
 
@@ -111,7 +112,9 @@ def urdf_of(name: str) -> Path:
 
 @cache
 def _fresh() -> Path:
-    return installed(Path(mkdtemp(prefix="ten_minutes_")))
+    folder = Path(mkdtemp(prefix="ten_minutes_"))
+    atexit.register(rmtree, folder, ignore_errors=True)  # an environment of a gigabyte
+    return installed(folder)
 
 
 def _spent(part: str, robot: str | None = None) -> dict[str, Any]:
