@@ -196,7 +196,8 @@ def measured():
         "most alike": np.append(np.full(1000, 0.5), [0.25, 0.75]),
         "both signs": both,
         "both signs, one far below": np.append(both, -1e3),
-        "a sign by rounding": np.append(plain, -1e-12),
+        "one of the other sign": np.append(plain, -1e3),
+        "a sign by rounding": np.append(plain - 2.0, -1e-12),
         "with gaps": np.append(plain, [np.nan, np.inf, -np.inf] * 100),
         "many": rng.normal(5.0, 1.0, 500_000),
     }

@@ -119,7 +119,8 @@ export function scaleOf(channel: Pick<Channel, "label" | "unit" | "signed" | "wh
   }
   let [low, high] = (range?.clipped ?? true) && inner ? inner : whole;
   const given = range !== null && (range.low !== null || range.high !== null);
-  const diverging = (channel.signed || (low < -1e-9 * high && high > -1e-9 * low)) && range?.scale !== "log";
+  const [least, most] = whole; // an outlier of the other sign is one of both signs, too, as in the pictures
+  const diverging = (channel.signed || (least < -1e-9 * most && most > -1e-9 * least)) && range?.scale !== "log";
   if (diverging && !given) { high = Math.max(-low, high); low = -high; }
   if (range?.low != null) low = range.low;
   if (range?.high != null) high = range.high;
