@@ -21,6 +21,7 @@ from tests.server.jobs.waiting import (
     local_document,
     partial_times,
     wait_until,
+    within,
 )
 
 QUICK = {"sampling": {"method": "sobol", "count": 4096}, "voxel_size_m": 0.05, "device": "cpu"}
@@ -51,8 +52,19 @@ def store(service):
 
 
 def kernel_pid(service):
-    (pid,) = service.dispatcher.engine.kernel_pids().values()
+    """That of the one kernel process, once its worker answers and it has started."""
+    (pid,) = kernel_pids(service)
     return pid
+
+
+def kernel_pids(service):
+    """Those of all workers; one that is slow to answer is asked again."""
+
+    def started():
+        pids = [*service.dispatcher.engine.kernel_pids().values()]
+        return len(pids) == service.settings.workers and all(pids) and pids
+
+    return wait_until(started, what="the kernel processes")
 
 
 def long_job(service, **options):
@@ -184,7 +196,7 @@ def test_a_native_crash_leaves_the_job_beside_it_running(tmp_path):
         jobs = [service.store.submit("ann", document).job.id for document in documents]
         running = lambda: all(service.store.get("ann", job).progress.samples_done > 0 for job in jobs)  # noqa: E731
         wait_until(running, what="progress of both")
-        os.kill(next(iter(service.dispatcher.engine.kernel_pids().values())), signal.SIGABRT)
+        os.kill(kernel_pids(service)[0], signal.SIGABRT)
         crashed, beside = sorted((ended(service.store, job) for job in jobs), key=lambda job: job.state)
         assert (crashed.state, crashed.error["code"]) == ("failed", "kernel_crash")
         assert beside.state == "succeeded", beside.error
@@ -245,10 +257,10 @@ def test_too_much_memory_fails_only_its_own_job(service):
 def test_cancel_frees_the_slot_within_3_s(service):
     job = long_job(service)
     pid = kernel_pid(service)
-    started = time.monotonic()
-    service.store.cancel("ann", job)
-    in_state(service.store, job, "canceled", timeout=3)
-    wait_until(lambda: not computes(pid), timeout=3 - (time.monotonic() - started), what="the end of the computation")
+    with within(3):
+        service.store.cancel("ann", job)
+        in_state(service.store, job, "canceled")
+        wait_until(lambda: not computes(pid), what="the end of the computation")
     assert quick_job(service).state == "succeeded"
 
 
@@ -256,11 +268,13 @@ def test_a_timeout_is_enforced_within_1_s(service):
     document = canonical(**{**LONG, "sampling": {**LONG["sampling"], "seed": 2}})
     job = service.store.submit("ann", document, timeout_s=4).job.id
     in_state(service.store, job, "running")
-    pid = wait_until(lambda: kernel_pid(service), timeout=4, what="the kernel process")
-    record = ended(service.store, job, timeout=10)
+    pid = kernel_pid(service)
+    with within(5):
+        record = ended(service.store, job)
     assert record.state == "timed_out" and record.error["code"] == "timed_out"
-    assert 4 <= (record.finished_at - record.started_at).total_seconds() < 5
-    wait_until(lambda: not computes(pid), timeout=1, what="the end of the computation")
+    assert (record.finished_at - record.started_at).total_seconds() >= 4
+    with within(1):
+        wait_until(lambda: not computes(pid), what="the end of the computation")
     assert not service.store.unfinished() or quick_job(service).state == "succeeded"
 
 
@@ -274,7 +288,8 @@ def test_a_job_that_iterates_ends_as_any(service, end, options):
     assert service.store.get("ann", job).progress.samples_total is None
     if end == "canceled":
         service.store.cancel("ann", job)
-    in_state(service.store, job, end, timeout=5)
+    with within(5):
+        in_state(service.store, job, end)
     assert quick_job(service).state == "succeeded"
 
 
@@ -284,8 +299,9 @@ def test_a_refined_volume_says_how_far_it_is_and_ends_as_any(service):
     finishing = lambda: "decided by inverse kinematics" in service.store.get("ann", job).progress.message  # noqa: E731
     wait_until(finishing, what="the refined volume")
     assert service.store.get("ann", job).progress.fraction == 0.99
-    service.store.cancel("ann", job)
-    in_state(service.store, job, "canceled", timeout=3)
+    with within(3):
+        service.store.cancel("ann", job)
+        in_state(service.store, job, "canceled")
     assert quick_job(service).state == "succeeded"
 
 
@@ -293,8 +309,9 @@ def test_a_canceled_job_can_be_retried_and_keeps_its_partial_results(service):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**21, "seed": 8}})
     job = service.store.submit("ann", document).job.id
     wait_until(lambda: len(partial_times(service.settings.data_dir)) > 2, what="partial results")
-    service.store.cancel("ann", job)
-    in_state(service.store, job, "canceled", timeout=3)
+    with within(3):
+        service.store.cancel("ann", job)
+        in_state(service.store, job, "canceled")
     kept = partial_times(service.settings.data_dir)
     service.store.retry("ann", job)
     again = []
