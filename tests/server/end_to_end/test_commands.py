@@ -18,6 +18,7 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import PATIENCE_S, QUICK
+from tests.server.jobs.waiting import within
 
 
 def wsrender(*arguments, **environment):
@@ -70,15 +71,14 @@ def assert_streams_end_with_their_key(server, secret, revoke):
             pass
         time.sleep(2)  # all of them are looked at more than once
         assert revoke().returncode == 0
-        revoked = time.monotonic()
-        assert "data: succeeded" not in list(lines)
-        for socket in (forces, view):
-            with pytest.raises(ConnectionClosed) as closed:
-                while "revoked" not in str(socket.recv(60)):
-                    pass
-                socket.recv(60)
-            assert closed.value.rcvd.code == 1008
-        assert time.monotonic() - revoked < 10
+        with within(10):
+            assert "data: succeeded" not in list(lines)
+            for socket in (forces, view):
+                with pytest.raises(ConnectionClosed) as closed:
+                    while "revoked" not in str(socket.recv(60)):
+                        pass
+                    socket.recv(60)
+                assert closed.value.rcvd.code == 1008
 
 
 def test_other_addresses_need_a_key(tmp_path):
@@ -121,8 +121,8 @@ def test_signals_stop_the_server_and_all_of_its_processes(tmp_path, number):
             pass
         server.process.send_signal(number)
         assert "succeeded" not in "".join(lines)  # to its end, which is in order
-    assert server.process.wait(timeout=30) == 0
-    _, alive = psutil.wait_procs(family, timeout=10)
+    assert server.process.wait(timeout=60) == 0
+    _, alive = psutil.wait_procs(family, timeout=60)
     assert alive == []
     assert "Traceback" not in server.log.read_text()
     everything = [server.data_dir, *server.data_dir.rglob("*")]
