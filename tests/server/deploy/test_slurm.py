@@ -50,7 +50,7 @@ def running(command, folder, environment, port):
         wait_for_port(port, process, 120)
         yield
         process.send_signal(signal.SIGTERM)
-        assert process.wait(30) in (0, -signal.SIGTERM), (folder / "log").read_text()
+        assert process.wait(60) in (0, -signal.SIGTERM), (folder / "log").read_text()
     finally:
         process.kill()
         process.wait()

@@ -98,7 +98,7 @@ def interrupted(server, settings, store, document, victim):
         workers(server)[0].kill()
     else:
         server.kill() if victim == "server" else server.kill_all()
-        wait_until(lambda: not any(alive(process) for process in orphans), 10, "the end of orphans")
+        wait_until(lambda: not any(alive(process) for process in orphans), 60, "the end of orphans")
         assert store.get("ann", job).state == "running"
         server.start()
     again = set()
@@ -126,7 +126,7 @@ def test_a_stopped_server_leaves_nothing_and_goes_on(server, settings, opened, e
     children = server.children()
     server.process.terminate()
     assert server.process.wait(60) == 0
-    wait_until(lambda: not any(alive(child) for child in children), 20, "the end of the children")
+    wait_until(lambda: not any(alive(child) for child in children), 60, "the end of the children")
     server.start()
     assert ended(store, job).state == "succeeded"
     assert comparable(store.result_document("ann", job)) == expected
