@@ -195,6 +195,7 @@ def measured():
         "too few to have outliers": np.append(np.linspace(0.1, 0.9, 8), 1e9),
         "most alike": np.append(np.full(1000, 0.5), [0.25, 0.75]),
         "both signs": both,
+        "both signs, further below": -both,
         "both signs, one far below": np.append(both, -1e3),
         "one of the other sign": np.append(plain, -1e3),
         "a sign by rounding": np.append(plain - 2.0, -1e-12),
