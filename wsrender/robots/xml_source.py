@@ -57,8 +57,11 @@ def title(text: str) -> str | None:
     """What a model that `parse` takes calls itself, told from its beginning; None: it does not."""
     beginning = ElementTree.XMLPullParser(["start"])
     beginning.feed(text[:LONGEST_BEGINNING])
-    found = (each.get(NAMED_BY[each.tag]) for _, each in beginning.read_events() if each.tag in NAMED_BY)
-    return next(found, None)
+    for event in beginning.read_events():
+        element = event[-1]
+        if isinstance(element, ElementTree.Element) and element.tag in NAMED_BY:
+            return element.get(NAMED_BY[element.tag])
+    return None
 
 
 def read(path: Path, field: str = "model") -> bytes:
