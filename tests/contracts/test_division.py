@@ -98,7 +98,7 @@ def test_shards_in_any_order_change_no_bit(planned, local):
 
 def sent(name):
     """The golden job as a task has it."""
-    return CanonicalDocument("", name, "cpu", (), (), json.dumps(job_of(name)))
+    return CanonicalDocument("", name, "cpu", (), (), text=json.dumps(job_of(name)))
 
 
 @pytest.mark.parametrize("wanted", [1, 1000])

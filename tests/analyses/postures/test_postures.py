@@ -161,9 +161,12 @@ def test_estimated_seconds_are_those_of_closed_forms_and_searches(robot, count):
     few = {key: value[:1] for key, value in all_of_them.items() if key != "robot"}
     one, whole = plan(JOB | all_of_them | few), plan(JOB | all_of_them)
     run_shard(one, 0)  # kernels are compiled
-    began = process_time()
-    run_shard(whole, 0)
-    assert 0.25 < (whole.cost.seconds - one.cost.seconds) / (process_time() - began) < 4  # of CPU time
+    took = []
+    for _ in range(2):  # once garbage of all tests before may be collected meanwhile
+        began = process_time()
+        run_shard(whole, 0)
+        took.append(process_time() - began)
+    assert 0.25 < (whole.cost.seconds - one.cost.seconds) / min(took) < 4  # of CPU time
 
 
 def written(folder, rows, header="x_m,y_m,z_m,qw,qx,qy,qz,name"):
