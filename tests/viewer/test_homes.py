@@ -133,6 +133,10 @@ def notebook(tmp_path):
         ],
     }
     (tmp_path / "arm.ipynb").write_text(json.dumps(content))
+    # Cells that JupyterLab takes for out of sight are hidden, on a busy machine the one that is looked at, too.
+    (tmp_path / "config/labconfig").mkdir(parents=True)
+    overrides = {"@jupyterlab/notebook-extension:tracker": {"windowingMode": "none"}}
+    (tmp_path / "config/labconfig/default_setting_overrides.json").write_text(json.dumps(overrides))
     port, token = 20_000 + os.getpid() % 20_000, "t" * 32
     options = [f"--ServerApp.port={port}", f"--IdentityProvider.token={token}", "--LabApp.news_url=None"]
     options += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate", "--no-browser", "--allow-root"]
