@@ -17,8 +17,14 @@ export function mountFile(root: HTMLElement, view: ArrayBuffer): Unmount { retur
 /** A tab on a loopback port. */
 export function mountLocal(root: HTMLElement): Unmount { return mountViewer(root, localSource()); }
 
-/** A notebook's widget (anywidget). */
-function render({ model, el }: { model: WidgetModel; el: HTMLElement }): Unmount { return mountViewer(el, widgetSource(model)); }
+/** A notebook's widget (anywidget), in an element of its own: Jupyter's loses its style where ipywidgets' layout is late. */
+function render({ model, el }: { model: WidgetModel; el: HTMLElement }): Unmount {
+  const root = el.appendChild(document.createElement("div")), unmount = mountViewer(root, widgetSource(model));
+  return () => {
+    unmount();
+    root.remove();
+  };
+}
 
 export default { render };
 
