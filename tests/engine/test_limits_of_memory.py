@@ -19,7 +19,7 @@ from wsrender.analyses.workspace.partial import SWEEP
 from wsrender.documents.constraints import Constraints
 from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.memory import CACHE_LINE, device_memory
-from wsrender.engine.sweep_plan import _chunk_size
+from wsrender.engine.sweep_plan import _chunk_size, _fair_share
 from wsrender.errors import InputError, NumericalError, ResourceError
 from wsrender.robot.constraints import constraints_for
 
@@ -55,6 +55,14 @@ def test_chunks_are_smaller_where_labels_of_a_sample_take_more(monkeypatch):
     for size, chunk in ((1 << 6, 1 << 18), (1 << 10, 1 << 16), (1 << 40, 256)):
         monkeypatch.setattr("wsrender.engine.collision.bytes_per_sample", lambda _, size=size: size)
         assert _chunk_size(plan, 1 << 20, device) == chunk
+
+
+def test_labelled_sweeps_go_in_half_as_many_chunks():
+    """Eight a thread, or four, of each of which a few samples are settled one by one."""
+    robot, workers = ws.load_robot("ur5e"), devices_of("cpu") * 2
+    for constraints, chunks in (((), 8), (constraints_for(robot, Constraints(self_collision=True)), 4)):
+        plan = SweepPlan(pipeline(robot, ws.Random(1 << 22), constraints))
+        assert _fair_share(plan, 1 << 22, workers) == (1 << 22) // (2 * chunks)
 
 
 def test_voxels_that_do_not_fit_are_refused_with_their_numbers():

@@ -1,9 +1,12 @@
 """Choosing base and tip."""
 
+import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from wsrender import robots
 from wsrender.errors import FrameNotFoundError, ModelError
+from wsrender.robots.frames import inverse_of_rigid
 
 LINKS = """<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>"""
 TWO_ARMS = f"""<mujoco model="torso"><worldbody>
@@ -140,3 +143,10 @@ def test_a_moving_jaw_is_known_by_its_link(palm):
     text = with_gripper("1", "2", "3", palm=palm).replace('"end"', '"Moving_Jaw"')
     with pytest.warns(robots.ModelWarning, match=f"is moved by 3 beyond 2.*tip={palm!r} ends"):
         robots.load_mjcf(text)
+
+
+def test_rigid_motions_are_inverted_as_any_matrix_is():
+    T = np.tile(np.eye(4), (50, 1, 1))
+    T[:, :3, :3] = Rotation.random(50, rng=np.random.default_rng(0)).as_matrix()
+    T[:, :3, 3] = np.random.default_rng(1).normal(size=(50, 3))
+    np.testing.assert_allclose(inverse_of_rigid(T), np.linalg.inv(T), rtol=0, atol=1e-14)

@@ -12,6 +12,7 @@ from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_the_command_line
 from wsrender.analyses.base_placement.result import PlacementMap
+from wsrender.analyses.base_placement.run import PAIRS, PAIRS_ON_CUDA
 from wsrender.analyses.jobs import parse_job
 from wsrender.documents.constraints import Apart, Constraints
 from wsrender.documents.placements import COORDINATES, mounted, placed
@@ -318,6 +319,13 @@ def test_placements_are_decided_few_at_a_time_or_all_at_once(monkeypatch):
     monkeypatch.setattr("wsrender.analyses.base_placement.run.PAIRS", 18)
     assert whole._together == 3
     assert np.array_equal(run_shard(whole, 0)["served"], at_once)
+
+
+def test_what_is_searched_tells_of_its_progress_and_a_gpu_gets_more_at_a_time(monkeypatch):
+    free, guarded = (plan(job("ur5e", RING, [DOWN] * 6, over=TURNED, **fields)) for fields in ({}, GUARDED))
+    assert guarded._together * guarded._alike * 6 <= PAIRS < (free._together + 1) * 6
+    monkeypatch.setattr(type(free), "device", "cuda:0")
+    assert free._together == PAIRS_ON_CUDA // 6 > 3 * PAIRS // 6 and guarded._together * guarded._alike * 6 <= PAIRS
 
 
 def test_shards_hold_all_placements_that_are_alike():
