@@ -13,10 +13,10 @@ from wsrender.version import __version__
 TITLE = "wsrender: workspace analysis of robotic manipulators"
 AUTHORS = "The wsrender developers"
 LICENSE = "Apache-2.0"
-RELEASED = "2026-11-27"
+RELEASED = "2026-11-28"
 # What the indices and maps follow, as far as it is cited in this project's sources.
 PAPER = {
-    "title": "WSRender",
+    "title": "WSRender: A Workspace Analysis and Visualization Toolbox for Robotic Manipulator Design and Verification",
     "journal": "IEEE Robotics and Automation Letters",
     "volume": 4,
     "number": 4,
