@@ -416,7 +416,6 @@ def test_a_body_within_a_solid_collides_with_it():
 @pytest.mark.parametrize(
     ("mechanism", "field", "message"),
     [
-        ({"library": "master_4dof"} | THIN, "bodies", "without them, its placement at one of their values"),
         ({"library": "delta", "minimum_leg_distance_m": 0.1} | THIN, "minimum_leg_distance_m", "keep apart by them"),
         ({"library": "delta", "bodies": THIN["bodies"] | {"platform": ENDLESS}}, "bodies.platform", "half-spaces"),
         ({"library": "delta", "bodies": {"link_radius_m": 0}}, "bodies.link_radius_m", "greater than 0"),

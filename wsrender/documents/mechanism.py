@@ -58,7 +58,10 @@ class Region(Bounds):
 
 
 class MechanismBodies(Document):
-    """Solids of a mechanism, which keep apart from each other and from what stands around, at every pose."""
+    """Solids of a mechanism, which keep apart from each other and from what stands around, at every pose.
+
+    Serial joints before and after have no links of their own: what they carry is legs and platform.
+    """
 
     link_radius_m: PositiveNumber | None = None
     """Radius of links and cranks, capsules along them [m]; those of legs that share a joint may touch. Null where all
@@ -108,9 +111,6 @@ class _Mechanism(Document):
         """(field, message) of every pair of fields that do not go together."""
         if self.bodies is None:
             return
-        if self.before or self.after:
-            remedy = "give the mechanism without them, its placement at one of their values"
-            yield "bodies", f"must be null with serial joints before or after, what these carry has no bodies: {remedy}"
         serial = len(self.serial_legs()) == self._legs
         if not serial and self.bodies.link_radius_m is None:
             yield "bodies.link_radius_m", "is required: the radius of capsules along the links of legs in closed form"

@@ -5,7 +5,7 @@ the platform touches it there: of it what is farther along than a gap keeps apar
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,7 @@ from wsrender.mechanisms.surfaces import between_surfaces, from_surface
 from wsrender.pipeline.constraints.leg_distance import segment_distance
 from wsrender.robot.collisions import standing_solid
 from wsrender.robot.surroundings import Standing, shapes_around
+from wsrender.robots.frames import inverse_of_rigid
 
 BEYOND = 1e-3  # [m] beyond the margin up to which distances are asked
 TRIANGLES, PAIRS = 1.4e3, 1.5e5  # of surfaces, and of two of them, that take as long as all other bodies of a mechanism
@@ -65,6 +66,14 @@ class Solids:
     serial: tuple[LegBodies, ...] = ()
     name: str = "collision"
 
+    def carried(self, T_before: np.ndarray, T_after: np.ndarray) -> "Solids":
+        """As seen from a base that serial joints carry, and from the end of those after the platform, (4, 4) each."""
+        return replace(
+            self,
+            platform=_seen_from(T_after, self.platform),
+            around=_seen_from(T_before, self.around),
+        )
+
     @property
     def effort(self) -> float:
         """How many times as long a pose takes as of bodies without surfaces."""
@@ -76,26 +85,31 @@ class Solids:
         return 1 + (own + other) / TRIANGLES + own * other / PAIRS + pairs / OF_LEGS
 
     def collisions(
-        self, legs: Sequence[Segments], poses: np.ndarray, serial: Sequence[np.ndarray] = ()
+        self,
+        legs: Sequence[Segments],
+        poses: np.ndarray,
+        serial: Sequence[np.ndarray] = (),
+        fixed: np.ndarray | None = None,
     ) -> tuple[np.ndarray, list[str]]:
         """Number, from 1, of the first pair of bodies that collides at poses (N, 4, 4), base frame, or 0, (N,); names.
 
-        ``legs``: those in closed form; ``serial``: frames (N, S, 4, 4) of the shapes of each of the others, base frame.
+        ``legs``: those in closed form; ``serial``: frames (N, S, 4, 4) of the shapes of each of the others, base frame;
+        ``fixed``: frames (N, 4, 4) in it of the one in which what is ``around`` stands, None where they coincide.
         """
-        found = self.alone(legs, poses)
+        found = self.alone(legs, poses, fixed)
         for k, T in enumerate(serial):
-            self.of_leg(found, k, T, legs, poses)
+            self.of_leg(found, k, T, legs, poses, fixed)
             for other in range(k):
                 self.of_two(found, other, k, serial[other], T)
         return found.number, found.names
 
-    def alone(self, legs: Sequence[Segments], poses: np.ndarray) -> FirstPair:
+    def alone(self, legs: Sequence[Segments], poses: np.ndarray, fixed: np.ndarray | None = None) -> FirstPair:
         """Of what does not belong to serial legs, as of `collisions`."""
         found, first_around, solids = FirstPair(len(poses), self.margin_m), 1 + len(self.platform), self._solids
         numbers, distances = self.numbers(len(legs)), Distances(solids[: first_around + len(self.around)])
 
         def frames(k: int, at: np.ndarray) -> np.ndarray:
-            return poses[at] @ solids[k].T if k < first_around else np.tile(solids[k].T, (len(at), 1, 1))
+            return poses[at] @ solids[k].T if k < first_around else _standing_at(fixed, solids[k], at)
 
         for a, b in self.apart:
             for (of_a, one), (of_b, other) in ((p, q) for p in legs[a].items() for q in legs[b].items()):
@@ -122,7 +136,15 @@ class Solids:
                 )
         return found
 
-    def of_leg(self, found: FirstPair, k: int, T: np.ndarray, legs: Sequence[Segments], poses: np.ndarray) -> FirstPair:
+    def of_leg(
+        self,
+        found: FirstPair,
+        k: int,
+        T: np.ndarray,
+        legs: Sequence[Segments],
+        poses: np.ndarray,
+        fixed: np.ndarray | None = None,
+    ) -> FirstPair:
         """Of the shapes of serial leg ``k``, at frames ``T`` (N, S, 4, 4), with all but other serial legs."""
         leg, solids, numbers = self.serial[k], self._solids, self.numbers(len(legs))
         first, platform, around = self._first[k], 1, 1 + len(self.platform)
@@ -130,7 +152,7 @@ class Solids:
         def frames(number: int, at: np.ndarray) -> np.ndarray:
             if number >= first:
                 return T[at, number - first]
-            return poses[at] @ solids[number].T if number < around else np.tile(solids[number].T, (len(at), 1, 1))
+            return poses[at] @ solids[number].T if number < around else _standing_at(fixed, solids[number], at)
 
         pairs = [np.add(leg.own, first), np.add(leg.platform, [first, platform]), np.add(leg.around, [first, around])]
         for a, b in np.concatenate(pairs).tolist():
@@ -233,6 +255,15 @@ class Solids:
         )
 
 
+def _seen_from(T: np.ndarray, solids: Sequence[Solid]) -> tuple[Solid, ...]:
+    return tuple(replace(solid, T=inverse_of_rigid(T[None])[0] @ solid.T) for solid in solids)
+
+
+def _standing_at(fixed: np.ndarray | None, solid: Solid, at: np.ndarray) -> np.ndarray:
+    """Frames (M, 4, 4) of a solid that stands around at poses ``at`` (M,), whose fixed frames are (N, 4, 4)."""
+    return np.tile(solid.T, (len(at), 1, 1)) if fixed is None else fixed[at] @ solid.T
+
+
 def _along(segment: np.ndarray) -> np.ndarray:
     """A frame (4, 4) in the middle of a segment (2, 3), z along it."""
     T, along = np.eye(4), segment[1] - segment[0]
@@ -249,8 +280,11 @@ def bodies_of(
     apart: Sequence[tuple[int, int]],
     ends: Sequence[tuple[np.ndarray, np.ndarray]],
     numeric: Sequence[NumericLeg],
+    moves: bool,
 ) -> Solids | None:
     """The bodies of a document; ``ends``: joints of the legs in closed form at the base and at the platform.
+
+    ``moves``: whether serial joints carry the base, and shapes of legs that stand on it past what is around.
 
     Raises InputError and ModelError for shapes that cannot be had, and for a serial leg without any.
     """
@@ -262,7 +296,7 @@ def bodies_of(
     )
     serial = list[LegBodies]()
     for leg in numeric:
-        serial.append(leg_bodies(leg, platform, around, ends, serial))
+        serial.append(leg_bodies(leg, platform, around, ends, serial, moves))
     return Solids(
         choice.link_radius_m,
         choice.margin_m,

@@ -184,14 +184,17 @@ def hybrid_at(mechanism: Mechanism, spec: MechanismSpec, q: np.ndarray) -> Varia
     """A document's hybrid at values (n,) of its serial joints; ``mechanism``: its parallel part alone."""
     count = len(spec.before)
     T_before, T_after = serial_transform(spec.before, q[:count]), serial_transform(spec.after, q[count:])
-    t = T_after[:3, 3]
-    R = np.eye(3) if mechanism.translational else T_after[:3, :3]
+    T_platform_tool = T_after.copy()
+    if mechanism.translational:
+        T_platform_tool[:3, :3] = np.eye(3)
+    R, t = T_platform_tool[:3, :3], T_platform_tool[:3, 3]
     carried = replace(
         mechanism,
         T_world_base=mechanism.T_world_base @ T_before,
         platform=(mechanism.platform - t) @ R,
         platform_cone_axis=mechanism.platform_cone_axis @ R,
         numeric=tuple(leg.seen_from(T_after) for leg in mechanism.numeric),
+        bodies=mechanism.bodies and mechanism.bodies.carried(T_before, T_platform_tool),
     )
     return Variant(q, carried, spec.before, spec.after)
 

@@ -32,22 +32,34 @@ class Stand:
     q: tuple[np.ndarray, ...]
 
 
-def stand(mechanism: Mechanism, poses: np.ndarray, *, device: str = "cpu", threads: int | None = None) -> Stand:
-    """Of platform poses (N, 4, 4), base frame, that all legs reach; unreachable where those in closed form do not."""
+def stand(
+    mechanism: Mechanism,
+    poses: np.ndarray,
+    *,
+    fixed: np.ndarray | None = None,
+    device: str = "cpu",
+    threads: int | None = None,
+) -> Stand:
+    """Of platform poses (N, 4, 4), base frame, that all legs reach; unreachable where those in closed form do not.
+
+    ``fixed``: as of `Solids.collisions`, where serial joints carry the base.
+    """
     q = tuple(leg.solve(poses, device=device, threads=threads).q.copy() for leg in mechanism.numeric)
     if mechanism.bodies is None:
         return Stand(np.full(len(poses), REACHABLE, np.int8), q)
     label, branches = np.full(len(poses), UNREACHABLE, np.int8), mechanism.on_each_branch()
     for branch in branches:
         for part in _parts(np.flatnonzero(label != REACHABLE), POSES):
-            _settle(mechanism.bodies, branch, poses, part, [LegPostures.single(each[part]) for each in q], label, q)
+            single = [LegPostures.single(each[part]) for each in q]
+            _settle(mechanism.bodies, branch, poses, fixed, part, single, label, q)
     if mechanism.numeric:
         for part in _parts(np.flatnonzero(label != REACHABLE), COMBINATIONS):
             known = [leg.postures(poses[part], device=device, threads=threads) for leg in mechanism.numeric]
             label[part] = UNREACHABLE
             for branch in branches:
                 left = np.flatnonzero(label[part] != REACHABLE)
-                _settle(mechanism.bodies, branch, poses, part[left], [each.at(left) for each in known], label, q)
+                postures = [each.at(left) for each in known]
+                _settle(mechanism.bodies, branch, poses, fixed, part[left], postures, label, q)
     return Stand(label, q)
 
 
@@ -84,10 +96,15 @@ def _parts(at: np.ndarray, size: int) -> list[np.ndarray]:
     return [at[first : first + size] for first in range(0, len(at), size)]
 
 
+def _of(fixed: np.ndarray | None, at: np.ndarray) -> np.ndarray | None:
+    return None if fixed is None else fixed[at]
+
+
 def _settle(
     bodies: Solids,
     branch: Mechanism,
     poses: np.ndarray,
+    fixed: np.ndarray | None,
     at: np.ndarray,
     postures: Sequence[LegPostures],
     label: np.ndarray,
@@ -99,9 +116,10 @@ def _settle(
     legs = inverse_kinematics(branch, poses[at])
     lines = segments(branch, legs.at(legs.feasible))
     left = np.flatnonzero(legs.feasible)
-    clear = bodies.alone(lines, poses[at[left]]).number == 0
+    clear = bodies.alone(lines, poses[at[left]], _of(fixed, at[left])).number == 0
     left, lines = left[clear], [{part: line[clear] for part, line in leg.items()} for leg in lines]
-    search = _Combinations(bodies, [each.at(left) for each in postures], lines, poses[at[left]])
+    known = [each.at(left) for each in postures]
+    search = _Combinations(bodies, known, lines, poses[at[left]], _of(fixed, at[left]))
     chosen, exhausted = search.run()
     some = (chosen >= 0).all(axis=1)
     for k, each in enumerate(postures):
@@ -115,7 +133,14 @@ def _settle(
 class _Combinations:
     """Postures of every serial leg in which bodies keep apart, at M poses."""
 
-    def __init__(self, bodies: Solids, postures: Sequence[LegPostures], lines: Sequence[Segments], poses: np.ndarray):
+    def __init__(
+        self,
+        bodies: Solids,
+        postures: Sequence[LegPostures],
+        lines: Sequence[Segments],
+        poses: np.ndarray,
+        fixed: np.ndarray | None,
+    ):
         self.bodies, self.count = bodies, len(poses)
         self.frames, self.free = [], []
         for k, known in enumerate(postures):
@@ -123,7 +148,7 @@ class _Combinations:
             frames = bodies.serial[k].frames(known.q[pose, number])
             rows = [{part: line[pose] for part, line in leg.items()} for leg in lines]
             found = FirstPair(len(pose), bodies.margin_m)
-            apart = bodies.of_leg(found, k, frames, rows, poses[pose]).number == 0
+            apart = bodies.of_leg(found, k, frames, rows, poses[pose], _of(fixed, pose)).number == 0
             free, place = known.there.copy(), np.zeros(known.there.shape, np.int64)
             free[pose, number], place[pose, number] = apart, np.arange(len(pose))
             self.free.append(free)

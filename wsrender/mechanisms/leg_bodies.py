@@ -65,8 +65,11 @@ def leg_bodies(
     around: Sequence[Standing],
     closed: Sequence[tuple[np.ndarray, np.ndarray]],
     earlier: Sequence[LegBodies],
+    moves: bool,
 ) -> LegBodies:
     """The shapes of a leg, beside ``closed``, the joints of legs in closed form, and serial ones.
+
+    ``moves``: whether the base moves past what is ``around``, else shapes that stand on it are not asked.
 
     Raises InputError for a robot without shapes that may collide, ModelError where one cannot be had, ResourceError for
     more pairs than are asked.
@@ -95,7 +98,7 @@ def leg_bodies(
         tuple(replace(solid_of(shape), name=f"{name}/{shape.name}") for shape in shapes),
         np.concatenate([bodies.pairs, bodies.around]),
         _meeting(bodies, np.flatnonzero(apart & ~tip), [each.bits for each in platform]),
-        _meeting(bodies, np.flatnonzero(moving != BASE), [each.bits for each in around]),
+        _meeting(bodies, np.flatnonzero(moves | (moving != BASE)), [each.bits for each in around]),
         ends,
         next_to,
         frozenset(_joined(ends, next_to, closed)),

@@ -133,6 +133,7 @@ def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> 
             _apart(legs),
             [(np.array(leg.base_m), np.array(leg.platform_m)) for leg in legs],
             numeric,
+            moves=bool(spec.before),
         ),
     )
 

@@ -158,10 +158,14 @@ def poses_labelled(
     *,
     by_subsystem: bool = True,
     precision: str = "float64",
+    fixed: np.ndarray | None = None,
     device: str = "auto",
     threads: int | None = None,
 ) -> tuple[np.ndarray, int]:
-    """Labels (N,) int8 of platform poses (N, 4, 4), base frame, as of `InverseSolver`, and (pose, leg) pairs asked."""
+    """Labels (N,) int8 of platform poses (N, 4, 4), base frame, as of `InverseSolver`, and (pose, leg) pairs asked.
+
+    ``fixed`` (N, 4, 4): as of `stand`.
+    """
     asked = mechanism.n * len(poses)
     if mechanism.n:
         test = replace(mechanism, constraints=()) if _joint_branches(mechanism) else mechanism
@@ -180,7 +184,8 @@ def poses_labelled(
         labels[left] = np.where(none, UNREACHABLE, np.minimum(labels[left], found))
     if mechanism.bodies:
         left = np.flatnonzero(labels == REACHABLE)
-        labels[left] = stand(mechanism, poses[left], device=device, threads=threads).label
+        there = None if fixed is None else fixed[left]
+        labels[left] = stand(mechanism, poses[left], fixed=there, device=device, threads=threads).label
     return labels, asked
 
 

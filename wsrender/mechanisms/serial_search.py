@@ -5,7 +5,7 @@ reaches it (`leg_bounds`); a pose is reached where the mechanism reaches it at t
 cells move the platform by less than SETTLED of the mechanism's size, or after MOST_CELLS of a pose, is undecided.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -23,7 +23,7 @@ from wsrender.robots.frames import inverse_of_rigid
 from wsrender.robots.reachable_box import reachable_box
 
 SETTLED = 1e-5  # of the size: a cell that moves the platform by less is not cut any more
-MOST_CELLS, MOST_NUMERIC = 4096, 48  # of a pose, and where every cell asks for a numerical solution
+MOST_CELLS, MOST_SLOW = 4096, 48  # of a pose, and where every cell asks for a numerical solution or for bodies
 BATCH = 1 << 15  # cells at a time
 FIRST_CUTS = 3  # of every range, in halves
 
@@ -46,6 +46,11 @@ class SerialSearch:
         """Whether poses that are called unreached are proven to be; else cells of a limited size were tried."""
         return proves_all(self.mechanism)
 
+    @property
+    def slow(self) -> bool:
+        """Whether serial legs are solved, or bodies asked, at every value of the joints that is tried."""
+        return bool(self.mechanism.numeric) or self.mechanism.bodies is not None
+
     def labels(
         self,
         positions: np.ndarray,
@@ -59,9 +64,9 @@ class SerialSearch:
 
         Positions (N, 3), world [m], and orientations against the fixed base, (3, 3) or (N, 3, 3). With ``around_m``
         [m] unreachable means that no position so near is reached either; it is proven, and what is not is undecided,
-        what serial legs reach too, which are not solved then.
+        what serial legs reach or bodies leave too, which are not asked then.
         """
-        most = MOST_NUMERIC if self.mechanism.numeric else MOST_CELLS
+        most = MOST_SLOW if self.slow else MOST_CELLS
         found = np.full(len(positions), UNREACHABLE, np.int8)
         rotations = np.broadcast_to(rotations, (len(positions), 3, 3))
         at_once = BATCH // 2**FIRST_CUTS
@@ -139,7 +144,7 @@ class _Batch:
     def __init__(self, search: SerialSearch, positions: np.ndarray, rotations: np.ndarray, most: int, around: float):
         self.search, self.positions, self.rotations, self.most = search, positions, rotations, most
         self.around, self.settled = around, max(SETTLED * search.reach_m, around)
-        self.tries = not (around and search.mechanism.numeric)  # numerical solutions say nothing of what is near
+        self.tries = not (around and search.slow)  # what single values are tried for says nothing of what is near
         mechanism = search.mechanism
         none = np.full(3, np.inf)
         self.anywhere = replace(mechanism, region_lower=-none, region_upper=none)
@@ -185,11 +190,29 @@ class _Batch:
             motion = motion + self.around
             near = (beyond <= motion) & ~surely_unreached(self.anywhere, platform, motion)
             tried = np.flatnonzero(near & (beyond <= 0) & self.tries)
-            labels, _ = poses_labelled(self.anywhere, platform[tried], device=device, threads=threads)
-            self.labels[at[tried[labels == REACHABLE]]] = REACHABLE
+            for some in self._rounds(at, tried):
+                fixed = self._fixed(middle[part][some])
+                labels, _ = poses_labelled(self.anywhere, platform[some], fixed=fixed, device=device, threads=threads)
+                self.labels[at[some[labels == REACHABLE]]] = REACHABLE
             np.add.at(self.asked, at[near], 1)
             keep[part] = near
         return keep
+
+    def _rounds(self, at: np.ndarray, cells: np.ndarray) -> Iterator[np.ndarray]:
+        """Cells to be tried together: all, or one of each pose that is not reached yet where tries are slow."""
+        if not self.search.slow:
+            yield cells
+            return
+        while len(cells := cells[self.labels[at[cells]] != REACHABLE]):
+            first = np.unique(at[cells], return_index=True)[1]
+            yield cells[first]
+            cells = np.delete(cells, first)
+
+    def _fixed(self, q: np.ndarray) -> np.ndarray | None:
+        """The fixed base in the carried one at serial values (M, K), (M, 4, 4), where what stands there is asked."""
+        if self.search.mechanism.bodies is None:
+            return None
+        return inverse_of_rigid(serial_transforms(self.search.before, q[:, : len(self.search.before)]))
 
     def _motion(self, which: np.ndarray, half: np.ndarray) -> np.ndarray:
         """By how much the legs' joints move within cells at most, from their middles (M,) [m]."""

@@ -45,8 +45,8 @@ def notices(plan: "ParallelWorkspaceAnalysis", partial: PartialResult, volume: V
         if refined is not None and not plan.search.proves:
             yield Notice(
                 "serial_joints_sampled",
-                "cones, distances of legs or serial legs are tried at many values of the serial joints, not searched: "
-                "the refined volume may miss what is reached between them",
+                "cones, bodies, distances of legs or serial legs are tried at many values of the serial joints, not "
+                "searched: the refined volume may miss what is reached between them",
                 field="refined_volume",
             )
     if refined is not None:

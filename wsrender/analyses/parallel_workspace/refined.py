@@ -17,7 +17,7 @@ from wsrender.engine import OrientationCounts
 from wsrender.mechanisms.flat import Flat
 from wsrender.mechanisms.membership import count_at, in_base_frame, poses_labelled
 from wsrender.mechanisms.orientations import OrientationSet, finer, orientation_set
-from wsrender.mechanisms.serial_search import MOST_NUMERIC
+from wsrender.mechanisms.serial_search import MOST_SLOW
 from wsrender.reach import Inside, estimate_volumes
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.volume_estimate import VolumeEstimates
@@ -184,7 +184,7 @@ def _of_set(
 def _most_points(plan: "ParallelWorkspaceAnalysis", sets: list[OrientationSet]) -> int:
     budget = BUDGET if plan.search is None else BUDGET_SEARCHED
     if plan.mechanism.numeric:
-        budget = BUDGET_NUMERIC if plan.search is None else BUDGET_NUMERIC // MOST_NUMERIC
+        budget = BUDGET_NUMERIC if plan.search is None else BUDGET_NUMERIC // MOST_SLOW
     poses = sum(len(each.rotations) for each in sets)
     return int(np.clip(budget // poses, FEWEST_POINTS, MOST_POINTS))
 
