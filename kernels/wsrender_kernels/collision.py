@@ -15,7 +15,7 @@ from typing import Any
 
 import warp as wp
 
-from wsrender_kernels.collision_crowd import AT_ONCE, CROWD
+from wsrender_kernels.collision_crowd import AT_ONCE, CROWD, SIDE_BY_SIDE, WITHIN
 from wsrender_kernels.collision_surfaces import LOOKUPS, TRIANGLES
 from wsrender_kernels.factories import factory
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
@@ -41,7 +41,7 @@ REAL_ARRAYS = (
 )
 _ARRAYS = {
     wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers",
-                 "crowd_numbers", "crowd_balls"),
+                 "crowd_numbers", "crowd_balls", "crowd_boxes"),
     wp.int32: ("sources", "capsule_frame", "capsule_axis", "pairs", "planes", "tests", "tables", "table_columns",
                "solid_frame", "vertex_range", "solid_pairs", "pair_kinds", "pair_ranks", "lookups", "grid_shapes",
                "node_links", "crowd_shape", "crowd_rows", "crowd_pairs"),
@@ -649,6 +649,8 @@ def _code(
         "REAL": "double" if exact else "float",
         "SQRT": "sqrt" if exact else "sqrtf",
         "AT_ONCE": AT_ONCE,
+        "SIDE_BY_SIDE": SIDE_BY_SIDE,
+        "WITHIN": WITHIN,
         "EDGE": EDGE,
         "CELLS": 6 * EDGE**2,
         "ROW": ROW,

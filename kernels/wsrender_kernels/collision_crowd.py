@@ -1,10 +1,13 @@
 """Many solids that stand, in the snippet of the filter of `collision`: balls of moving solids are looked up in cells.
 
-A cell says how near the nearest is, and which are near at all. Only pairs with those are tested, sample by sample. On
+A cell says how near the nearest is, and which are near at all. Only pairs with those are tested, sample by sample,
+SIDE_BY_SIDE at a time: axes of what moves against boxes, of which those without a width are axes or points. On
 CUDA all pairs are tested: by code that is written out, or beside surfaces and beyond `MOST_TESTS` by what reads data.
 """
 
 AT_ONCE = 32  # balls of a solid, at most
+SIDE_BY_SIDE = 16  # tests
+WITHIN = 36  # tests of a pair by what lies within its solids, at most
 
 CROWD = """
     alignas(64) unsigned looked_up_[@CROWD_BALLS * LN], near_[LN];
@@ -41,22 +44,67 @@ CROWD = """
             }
         }
     }
-    // Squared distance of the axes of what stands and what moves. Frames are not read here: that single numbers of them
-    // are, keeps clang from taking the loop that makes them to SIMD.
-    auto between = [&](int test, int l) {
-        const int* ends = program.tests.data + 2 * test;
-        const float* A = program.capsules.data + 6 * ends[0]; const float* B = C + 6 * ends[1] * LN + l;
-        const float* G = A + 3; const float* H = B + 3 * LN;
-        const float* t = program.test_numbers.data + 5 * test;
-        float r0 = A[0] - B[0], r1 = A[1] - B[LN], r2 = A[2] - B[2 * LN];
-        float g0 = G[0], g1 = G[1], g2 = G[2], h0 = H[0], h1 = H[LN], h2 = H[2 * LN];
-        float b = g0 * h0 + g1 * h1 + g2 * h2, c = g0 * r0 + g1 * r1 + g2 * r2, f = h0 * r0 + h1 * r1 + h2 * r2;
-        auto within = [](float x, float most) { x = x < most ? x : most; return x > -most ? x : -most; };
-        float s = within((b * f - c) / (1.000001f - b * b), t[0]);
-        float w = within(b * s + f, t[1]);
-        s = within(b * w - c, t[0]);
-        r0 += g0 * s - h0 * w; r1 += g1 * s - h1 * w; r2 += g2 * s - h2 * w;
-        return r0 * r0 + r1 * r1 + r2 * r2;
+    // Tests wait until there are so many. Frames are not read here: that single numbers of them are, keeps clang from
+    // taking the loop that makes them to SIMD.
+    struct Asked { int lane, owner, test; } asked_[@SIDE_BY_SIDE * @WITHIN];
+    int asked = 0;
+    typedef float X __attribute__((ext_vector_type(@SIDE_BY_SIDE)));
+    auto decide = [&]() {
+        constexpr int GROUP = @SIDE_BY_SIDE;
+        const int some = asked < GROUP ? asked : GROUP;
+        alignas(64) float of_capsule[6][GROUP], of_box[15][GROUP], of_test[3][GROUP], square[GROUP];
+        Asked own[GROUP];
+        asked -= some;
+        for (int i = 0; i < GROUP; i++) {
+            own[i] = asked_[asked + (i < some ? i : 0)];
+            const int* ends = program.tests.data + 2 * own[i].test;
+            const float* A = program.crowd_boxes.data + 16 * ends[0];
+            const float* B = C + 6 * ends[1] * LN + own[i].lane;
+            const float* t = program.test_numbers.data + 5 * own[i].test;
+            for (int k = 0; k < 6; k++) of_capsule[k][i] = B[k * LN];
+            for (int k = 0; k < 15; k++) of_box[k][i] = A[k];
+            for (int k = 0; k < 3; k++) of_test[k][i] = t[1 + k];
+        }
+        const X* m = (const X*)of_capsule; const X* h = m + 3; const X* axes = (const X*)of_box;
+        const X* size = axes + 12; const X most = *(const X*)of_test;
+        X p[3], u[3], d[3];
+        for (int k = 0; k < 3; k++) d[k] = m[k] - axes[9 + k];
+        for (int k = 0; k < 3; k++) {
+            p[k] = axes[3 * k] * d[0] + axes[3 * k + 1] * d[1] + axes[3 * k + 2] * d[2];
+            u[k] = axes[3 * k] * h[0] + axes[3 * k + 1] * h[1] + axes[3 * k + 2] * h[2];
+        }
+        // As in `segments.box_distance`.
+        auto within = [](X x, X most) { x = x < most ? x : most; return x > -most ? x : -most; };
+        auto beyond = [&](X t, int k) { X x = p[k] + t * u[k]; return x - within(x, size[k]); };
+        auto slope = [&](X t) { return beyond(t, 0) * u[0] + beyond(t, 1) * u[1] + beyond(t, 2) * u[2]; };
+        X low = -most, high = most, below = slope(low), above = slope(high);
+        for (int k = 0; k < 3; k++) {
+            const X per = 1.f / u[k];
+            for (int side = 0; side < 2; side++) {
+                X t = within(((side ? size[k] : -size[k]) - p[k]) * per, most), now = slope(t);
+                auto lower = (now <= 0.f) & (t > low), upper = (now >= 0.f) & (t < high);
+                low = lower ? t : low; below = lower ? now : below;
+                high = upper ? t : high; above = upper ? now : above;
+            }
+        }
+        X share = -below / (above - below);
+        share = share < 1.f ? share : (X)1.f;
+        share = share > 0.f ? share : (X)0.f;
+        const X t = low + (high - low) * share;
+        X square_of = (X)0.f;
+        for (int k = 0; k < 3; k++) { X x = beyond(t, k); square_of += x * x; }
+        *(X*)square = square_of;
+        for (int i = 0; i < some; i++) {
+            const int l = own[i].lane;
+            const int* pair = program.crowd_pairs.data + 5 * own[i].owner;
+            unsigned* hit = hit_ + (int)program.pair_numbers.data[2 * pair[0] + 1] * LN + l;
+            if (square[i] < of_test[2][i]) *hit = 1u;
+            if (*hit || !(square[i] < of_test[1][i])) continue;
+            unsigned* mask = masks + (pair[0] >> 5) * LN + l; const unsigned bit = 1u << (pair[0] & 31);
+            if (*mask & bit) continue;
+            *mask |= bit;
+            for (int k = 0; k < pair[4]; k++) asked_[asked++] = {l, own[i].owner, pair[3] + k};
+        }
     };
     const int set_words = program.crowd_set_words;
     for (int l = 0; l < LN; l++) {
@@ -73,20 +121,18 @@ CROWD = """
                 unsigned named = 0u;
                 for (int k = 0; k < count; k++) named |= program.crowd_sets.data[sets[k] + w];
                 for (; named; named &= named - 1u) {
-                    const int* own = program.crowd_pairs.data + 5 * (32 * (r * set_words + w) + __builtin_ctz(named));
+                    const int owner = 32 * (r * set_words + w) + __builtin_ctz(named);
+                    const int* own = program.crowd_pairs.data + 5 * owner;
                     const int pair = own[0];
                     if (pair < 0) continue;
-                    unsigned* hit = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN + l;
-                    if (hit_[l] | *hit) continue;
-                    bool open = false, touching = false;
-                    for (int i = own[1]; i < own[1] + own[2] && !open; i++)
-                        open = between(i, l) < program.test_numbers.data[5 * i + 2];
-                    for (int i = own[3]; i < own[3] + own[4] && open && !touching; i++)
-                        touching = between(i, l) < program.test_numbers.data[5 * i + 3];
-                    if (touching) *hit = 1u;
-                    else if (open) masks[(pair >> 5) * LN + l] |= 1u << (pair & 31);
+                    if (hit_[l] | hit_[(int)program.pair_numbers.data[2 * pair + 1] * LN + l]) continue;
+                    for (int k = 0; k < own[2]; k++) {
+                        asked_[asked++] = {l, owner, own[1] + k};
+                        while (asked >= @SIDE_BY_SIDE) decide();
+                    }
                 }
             }
         }
     }
+    while (asked) decide();
 """

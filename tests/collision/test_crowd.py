@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from wsrender_kernels.collision_crowd import AT_ONCE
+from wsrender_kernels.collision_crowd import AT_ONCE, WITHIN
 
 import wsrender as ws
 from tests.collision.robots import drawn, nearest
 from tests.collision.test_labels import SELF, labels, pipeline, wrong, wrong_at_the_boundary
+from wsrender.collision.covers import LEVELS
 from wsrender.collision.crowd import LEAST, NOTHING
 from wsrender.collision.grids import QUANTA, ROUNDING
+from wsrender.collision.segments import box_distance
 from wsrender.collision.solids import BASE
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Constraints
@@ -80,6 +82,36 @@ def test_the_same_labels_with_cells_and_without():
     np.testing.assert_array_equal(*found)
     assert set(np.unique(found[0])) == {0, 1, 2}
     assert with_cells.decided[0] >= without.decided[0]  # by the filter
+
+
+def test_boxes_are_decided_by_the_filter():
+    """A box is its own cover: of links that are capsules nothing is open but within what float32 may be off."""
+    robot = ws.load_robot("franka_panda")
+    constraints = constraints_for(robot, None, many(robot, 40, 4, 0.2, ("box",)))
+    found, (with_cells, without) = both_ways(robot, constraints, 1 << 14)
+    np.testing.assert_array_equal(*found)
+    assert 0.1 < (found[0] > 0).mean() < 0.9
+    assert with_cells.decided[1:].sum() < 1e-3 * (1 << 14) < 1e-2 * without.decided[1:].sum()
+
+
+def test_distances_of_segments_from_boxes():
+    """Against as many points of each; axes along faces, points, and segments through the box among them."""
+    random, size = np.random.default_rng(0), np.array([0.3, 0.2, 0.1])
+    middle, half = random.normal(size=(2, 1000, 3)) * [[[0.5]], [[0.4]]]
+    half[:300, 0] = half[:100, 1] = 0
+    half[250:400] *= 1e-4
+    half[400:420] = 0
+    along = middle[:, None] + half[:, None] * np.linspace(-1, 1, 2001)[:, None]
+    expected = np.linalg.norm(along - np.clip(along, -size, size), axis=2).min(axis=1)
+    found, step = box_distance(middle, half, size), np.linalg.norm(half, axis=1) / 1000
+    assert (found <= expected + 1e-12).all() and (found >= expected - step / 2 - 1e-12).all()
+    away = expected > 0.1  # there a point half a step off is farther by no more than this
+    assert (found >= expected - (step / 2) ** 2 / 0.2 - 1e-12)[away].all() and away.sum() > 500
+    assert (found == 0).sum() > 50
+
+
+def test_the_kernel_holds_all_tests_of_a_pair():
+    assert max(inner for _, inner in LEVELS) ** 2 == WITHIN
 
 
 def both_ways(robot, constraints, count, change=lambda program: program):
@@ -194,3 +226,20 @@ def test_a_long_rod_has_as_many_balls_as_the_kernel_holds():
     np.testing.assert_array_equal(*found)
     assert 0.02 < (found[0] > 0).mean() < 0.98
     assert with_cells.decided[0] > 0.99 * (1 << 12)  # by covers that are the solids themselves
+
+
+def test_a_rod_along_the_faces_of_boxes():
+    """Slopes along a box's axes are 0, and places where the rod comes level with a face are nowhere."""
+    text = """<mujoco><worldbody><body><joint type="slide" axis="1 0 0" range="-1 1" limited="true"/>
+      <body><joint type="slide" axis="0 1 0" range="-1 1" limited="true"/><site name="tip" pos="0 0 .5"/>
+      <geom type="capsule" fromto="0 0 -.5 0 0 .5" size=".03"/><geom type="sphere" pos="0 0 .7" size=".1"/>
+      </body></body></worldbody></mujoco>"""
+    robot, random = ws.load_robot(text, tip="tip"), np.random.default_rng(3)
+    places = random.uniform(-1, 1, (24, 3))
+    boxes = [ws.Box(size_m=(0.2, 0.1, 0.15), position_m=tuple(place.tolist())) for place in places]
+    (constraint,) = constraints_for(robot, None, ws.Environment(boxes))
+    q = drawn(robot, 3000)
+    least = nearest(constraint, q)
+    assert 200 < (least < 0).sum() < 2800
+    assert not wrong(labels(robot, q, (constraint,)) > 0, least < 0, least).size
+    assert not wrong_at_the_boundary(robot, constraint, 100, 4000, "cpu")

@@ -26,6 +26,22 @@ for indices in sys.argv[1:]:
     ws.analyze("phantom_omni", sampling=ws.Random(300, seed=1), indices=[indices], voxel_size_m=0.02, device="cpu")
 """
 
+CONSTRAINED = """
+import sys
+import warp as wp
+import wsrender as ws
+from wsrender.engine import devices_of
+
+devices_of("cpu")
+wp.config.log_level = wp.LOG_INFO
+around = {"sphere": {"center_m": [0, 0, 0], "radius_m": 2.0}}
+toward = {"toward": [0, 0, 1], "within_deg": 170}
+asked = {"constrained": {"self_collision": True, "region": around, "orientation": toward}, "bare": None}
+for name in sys.argv[1:]:
+    own = {"constraints": asked[name], "refined_volume": None, "device": "cpu"}
+    ws.analyze("ur5e", sampling=ws.Random(300, seed=1), indices=["isotropy"], voxel_size_m=0.1, **own)
+"""
+
 SMALL_KERNEL = """
 import sys
 import warp as wp
@@ -47,10 +63,16 @@ def start(cache, *arguments, script=SCRIPT):
 
 def compiled(processes):
     """Names of the modules that each process compiled."""
-    logs = [process.communicate(timeout=300)[0] for process in processes]
+    return [[name for name, how in each.items() if how == "(compiled)"] for each in modules(processes)]
+
+
+def modules(processes):
+    """Of each process by name of a module whether it was "(compiled)" or "(cached)"."""
+    logs = [process.communicate(timeout=600)[0] for process in processes]
     for process, log in zip(processes, logs, strict=True):
         assert process.returncode == 0, log
-    return [[line.split()[1] for line in log.splitlines() if "(compiled)" in line] for log in logs]
+    lines = [[line.split() for line in log.splitlines() if line.startswith("Module ")] for log in logs]
+    return [{words[1]: words[-1] for words in each} for each in lines]
 
 
 def test_processes_share_what_one_of_them_compiles(tmp_path):
@@ -60,6 +82,20 @@ def test_processes_share_what_one_of_them_compiles(tmp_path):
     # A kernel is the same after others as before them.
     after, alone = compiled([start(tmp_path, "manipulability", "isotropy")]), compiled([start(tmp_path, "isotropy")])
     assert after[0] and not alone[0]
+
+
+def test_a_sweep_without_constraints_has_no_code_of_any(tmp_path):
+    """Its kernels are the same whether a process has made constrained ones before or none, and name nothing of them."""
+    (before,) = modules([start(tmp_path, "constrained", "bare", script=CONSTRAINED)])
+    (alone,) = modules([start(tmp_path, "bare", script=CONSTRAINED)])
+    made = {name for name, how in before.items() if how == "(compiled)"}
+    assert set(alone.values()) == {"(cached)"} and set(alone) < made
+    assert any("sweep" in name for name in alone)
+    code = {name: next(tmp_path.rglob(f"wp_{name}_*.cpp")).read_text().lower() for name in made}
+    words = ("reject", "label", "constraint", "collision", "first_of", "_region", "limits")
+    assert {word for name in alone for word in words if word in code[name]} == set()
+    others = "".join(code[name] for name in made - set(alone))
+    assert all(word in others for word in words)
 
 
 def test_the_precompiled_header_is_kept(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.collision.covers import Capsules, outer_cover
 from wsrender.collision.distance import AT_A_TIME, Distances, frames_of
 from wsrender.collision.grids import Lookup
-from wsrender.collision.program import axes_distance
+from wsrender.collision.segments import axes_distance
 from wsrender.collision.solids import Pairs
 from wsrender.robots.chain import Chain
 

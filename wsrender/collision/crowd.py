@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.collision.covers import Cover, from_segment
+from wsrender.collision.covers import Capsules, Cover, from_segment
 from wsrender.collision.grids import CELLS, LEVEL, QUANTA, ROUNDING, DistanceGrid
 from wsrender.collision.solids import BASE, Pairs, Solid
 
@@ -71,6 +71,23 @@ def crowd(pairs: Pairs, numbers: Iterable[int], covers: Mapping[int, Cover], rea
             break
         cells //= 2
     return Crowd(solids, grid, sets, {k: own / [1, 1, 1, grid.quantum] for k, own in balls.items()})
+
+
+def wide_boxes(solid: Solid, capsules: Capsules) -> list[tuple[np.ndarray, float]]:
+    """Rows (16,) and radii of a box that stands, or of what are boxes in place of another solid's capsules.
+
+    In the base's frame: axes, of a capsule its own first (9), middle (3), half sizes (3) [m], nothing (1).
+    """
+    R, at = solid.T[:3, :3], solid.T[:3, 3]
+    if solid.kind == "box":
+        return [(np.r_[R.T.ravel(), at, solid.size, 0.0], 0.0)]
+    found = []
+    for a, b, radius in zip(capsules.a, capsules.b, capsules.radius, strict=True):
+        half = R @ (b - a) / 2
+        _, _, axes = np.linalg.svd(half[None])  # the first along the capsule
+        size = [np.linalg.norm(half), 0.0, 0.0]
+        found.append((np.r_[axes.ravel(), at + R @ (a + b) / 2, size, 0.0], float(radius)))
+    return found
 
 
 def _balls(solid: Solid, cover: Cover, margin: float) -> np.ndarray:

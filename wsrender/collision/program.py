@@ -11,9 +11,10 @@ import numpy as np
 from wsrender.collision.asked import counted
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
-from wsrender.collision.crowd import Crowd, crowd, crowded
+from wsrender.collision.crowd import Crowd, crowd, crowded, wide_boxes
 from wsrender.collision.distance import Distances, frames_of
 from wsrender.collision.grids import DistanceGrid, Lookup, lookup, reach_of, surface_grid
+from wsrender.collision.segments import SHORT, axes_distance, box_distance
 from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.supports import center_of, core, vertices_by_direction
 from wsrender.robots.chain import Chain
@@ -26,7 +27,6 @@ NAMED_COST = 10.0  # of a test of one sample by itself, likewise
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
 RARELY = 0.04  # so that in a quarter of all cases or more none of 32 lanes is
 ABSENT = -1.0  # a squared distance that nothing falls below
-SHORT = 1e-10  # squared length of an axis that is a point [m²], or length of half of one [m]
 ALIGNED = 1e-9  # of a unit vector's coordinates
 KIND = {"sphere": 3, "capsule": 3, "cylinder": 3, "box": 3, "hull": 0, "ellipsoid": 1, "half_space": 2, "surface": 4}
 
@@ -53,10 +53,12 @@ class Program:
     each axis, first word; ``grid_words``; ``nodes`` and ``node_links`` as `Tree.balls` and `Tree.links`, in the base's
     frame, of the rows of ``triangles`` (F, 9); a surface's ``vertex_range`` is first of its nodes, first and end;
     ``solid_capsules`` (S, 7): middle and half axis in its joint and radius of a capsule around a solid that may meet
-    one. Of a `Crowd`: ``crowd_numbers`` (4,): origin and cell; ``crowd_shape`` (3,);
-    ``crowd_words``; ``crowd_sets`` (K, W); ``crowd_rows`` (M, 3) of those that move: joint from 1, first ball, balls;
-    ``crowd_balls`` (B, 4); ``crowd_pairs`` (M * 32 W, 5) of each with each that stands: pair or -1, first test and
-    number outside, the same inside. With it the first ``alone`` of ``pairs`` and ``moving`` capsules are enough.
+    one. Of a `Crowd`: ``crowd_numbers`` (4,): origin and cell; ``crowd_shape`` (3,); ``crowd_words``; ``crowd_sets``
+    (K, W); ``crowd_rows`` (M, 3) of those that move: joint from 1, first ball, balls;
+    ``crowd_balls`` (B, 4); ``crowd_boxes`` (E, 16): axes, middle and half sizes of boxes, which a radius makes wide;
+    ``crowd_pairs`` (M * 32 W, 5) of each with each that stands: pair or -1, first test and number outside, the same
+    inside, none where those outside say both; its ``tests`` are of a box and a capsule. With it the first ``alone`` of
+    ``pairs`` and ``moving`` capsules are enough.
     ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table along its first coordinate; ``never``,
     ``always``: pairs by proof.
     """
@@ -100,6 +102,7 @@ class Program:
     crowd_sets: np.ndarray
     crowd_rows: np.ndarray
     crowd_balls: np.ndarray
+    crowd_boxes: np.ndarray
     crowd_pairs: np.ndarray
     epsilon: float
     moving: int
@@ -198,20 +201,25 @@ class _Chosen:
         """Levels of the covers outside and inside with the least expected cost; None: none inside.
 
         ``alone``: what a test costs where it is made of those samples alone in which the solids are near; 0: of all.
+        Alone, a box that stands is its own cover.
         """
         a, b = self.pairs.pairs[pair]
         margin = self.pairs.margin(pair)
-        exact = all(self.pairs.solids[k].kind == "half_space" or self.covers[k].exact for k in (a, b))
+        kinds, itself = [self.pairs.solids[k].kind for k in (a, b)], alone > 0
+        as_one = {"half_space", "box"} if itself else {"half_space"}
+        exact = (kinds[0] in as_one or self.covers[a].exact) and (kinds[1] == "half_space" or self.covers[b].exact)
         if exact:
             return 0, 0
-        tests, close = self._below(a, b, "outer", 0, margin)
+        tests, close = self._below(a, b, "outer", 0, margin, None, itself)
         if (not alone and OPEN_COST * close.mean() <= tests) or not close.any():
             return 0, None
         near_at = np.flatnonzero(close) if alone else None
         share = close.mean() if alone else 1.0
         first, open_cost = alone * share or 1.0, OPEN_COST * share
-        near = [self._below(a, b, "outer", level, margin, near_at) for level in range(len(LEVELS))]
-        hit = [self._below(a, b, "inner", level, margin, near_at) for level in range(len(LEVELS))]
+        near, hit = (
+            [self._below(a, b, side, level, margin, near_at, itself) for level in range(len(LEVELS))]
+            for side in ("outer", "inner")
+        )
         choices = []
         for outer, (tests, close) in enumerate(near):
             second = first * close.mean() if alone else 1.0
@@ -224,9 +232,12 @@ class _Chosen:
         return outer, inner
 
     def _below(
-        self, a: int, b: int, side: str, level: int, margin: float, at: np.ndarray | None = None
+        self, a: int, b: int, side: str, level: int, margin: float, at: np.ndarray | None, itself: bool
     ) -> tuple[int, np.ndarray]:
-        """Number of tests, and at which (N,) configurations any of them is below the sum of radii."""
+        """Number of tests, and at which (N,) configurations any of them is below the sum of radii.
+
+        ``at``: at these alone; ``itself``: against a box that stands itself, not its cover.
+        """
         below, tests = np.zeros(DRAWN if at is None else len(at), bool), 0
         middle_b, half_b, radius_b = self._capsules(b, side, level, at)
         if self.pairs.solids[a].kind == "half_space":
@@ -234,6 +245,12 @@ class _Chosen:
             for k in range(len(radius_b)):
                 height = (middle_b[:, k] - T[:3, 3]) @ T[:3, 2]
                 below |= height - np.abs(half_b[:, k] @ T[:3, 2]) < radius_b[k] + margin
+            return len(radius_b), below
+        if itself and self.pairs.solids[a].kind == "box":
+            T, size = self.pairs.solids[a].T, self.pairs.solids[a].size
+            for k in range(len(radius_b)):
+                apart = box_distance((middle_b[:, k] - T[:3, 3]) @ T[:3, :3], half_b[:, k] @ T[:3, :3], size)
+                below |= apart < radius_b[k] + margin
             return len(radius_b), below
         middle_a, half_a, radius_a = self._capsules(a, side, level, at)
         for i in range(len(radius_a)):
@@ -270,21 +287,6 @@ class _Chosen:
             self._placed[key] = middle, np.einsum("nij,cj->nci", R, (capsules.b - capsules.a) / 2), capsules.radius
         middle, half, radius = self._placed[key]
         return (middle, half, radius) if at is None else (middle[at], half[at], radius)
-
-
-def axes_distance(middle_a: np.ndarray, half_a: np.ndarray, middle_b: np.ndarray, half_b: np.ndarray) -> np.ndarray:
-    """Distances (N,) of segments given by middles and half axes (N, 3); never below the least (Ericson 2004, 5.1.9)."""
-
-    def dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return np.einsum("...i,...i->...", x, y)
-
-    r, a, e = middle_a - middle_b, np.maximum(dot(half_a, half_a), SHORT), np.maximum(dot(half_b, half_b), SHORT)
-    b, c, f = dot(half_a, half_b), dot(half_a, r), dot(half_b, r)
-    s = np.clip((b * f - c * e) / (a * e * 1.000001 - b * b), -1, 1)
-    t = np.clip((b * s + f) / e, -1, 1)
-    s = np.clip((b * t - c) / a, -1, 1)
-    apart = r + s[..., None] * half_a - t[..., None] * half_b
-    return np.sqrt(dot(apart, apart))
 
 
 class _Rows:
@@ -451,10 +453,50 @@ def _between(
     for i in rows.of(a, side, level):
         for k in rows.of(b, side, level):
             sum_ = rows.capsules[i][3] + rows.capsules[k][3] + pairs.margin(pair)
-            near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
-            hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
-            found.append(((i, k), [rows.capsules[i][2], rows.capsules[k][2], near, hit, 0.0]))
+            bounds = _bounds(sum_, side, exact, epsilon)
+            found.append(((i, k), [rows.capsules[i][2], rows.capsules[k][2], *bounds, 0.0]))
     return found
+
+
+class _Boxes:
+    """Wide boxes in place of what stands, as they come: half sizes of 0 make a capsule or a ball of one."""
+
+    def __init__(self, pairs: Pairs, covers: dict[int, Cover]):
+        self.pairs, self.covers = pairs, covers
+        self.rows: list[np.ndarray] = []
+        self._numbers: dict[tuple[int, str, int], list[tuple[int, float]]] = {}
+
+    def exact(self, solid: int) -> bool:
+        """Whether its boxes are the solid."""
+        return self.pairs.solids[solid].kind == "box" or self.covers[solid].exact
+
+    def of(self, solid: int, side: str, level: int) -> list[tuple[int, float]]:
+        """Numbers and radii of the boxes in place of a solid's cover."""
+        key = (solid, "outer", 0) if self.exact(solid) else (solid, side, level)
+        if key not in self._numbers:
+            found = wide_boxes(self.pairs.solids[solid], getattr(self.covers[solid], key[1])[key[2]])
+            self._numbers[key] = [(len(self.rows) + k, radius) for k, (_, radius) in enumerate(found)]
+            self.rows += [row for row, _ in found]
+        return self._numbers[key]
+
+
+def _beside(
+    rows: _Rows, boxes: _Boxes, pair: int, side: str, level: int, epsilon: float
+) -> list[tuple[tuple[int, int], list[float]]]:
+    """Tests of wide boxes and the capsules outside or inside of what moves beside them."""
+    a, b = (int(k) for k in boxes.pairs.pairs[pair])
+    exact, margin, found = boxes.exact(a) and rows.covers[b].exact, boxes.pairs.margin(pair), []
+    for box, radius in boxes.of(a, side, level):
+        for k in rows.of(b, side, level):
+            near, hit = _bounds(radius + rows.capsules[k][3] + margin, side, exact, epsilon)
+            found.append(((box, k), [0.0, rows.capsules[k][2], near, hit, 0.0]))
+    return found
+
+
+def _bounds(apart: float, side: str, exact: bool, epsilon: float) -> tuple[float, float]:
+    """Squared distances of axes below which a pair is near, and hit."""
+    near = (apart + epsilon) ** 2 if side == "outer" else ABSENT
+    return near, max(apart - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
 
 
 def _crowd(
@@ -463,20 +505,21 @@ def _crowd(
     """The arrays of a crowd; its tests are added to the rows."""
     if many is None:
         no_rows = {f"crowd_{name}": _i([], width) for name, width in (("shape", 3), ("rows", 3), ("pairs", 5))}
+        no_balls = {"crowd_balls": _f([], 4), "crowd_boxes": _f([], 16)}
         no_words = {f"crowd_{name}": np.zeros((0, 1), np.uint32) for name in ("words", "sets")}
-        return {**no_rows, **no_words, "crowd_numbers": _f([], 4), "crowd_balls": _f([], 4)}
+        return {**no_rows, **no_words, "crowd_numbers": _f([], 4), **no_balls}
     bits = {solid: bit for bit, solid in enumerate(many.solids)}
     of_pairs = np.full((len(many.balls), 32 * many.sets.shape[1], 5), -1, np.int32)
     places = {solid: row for row, solid in enumerate(many.balls)}
+    boxes = _Boxes(pairs, rows.covers)
     for pair, (outer, inner) in named.items():
         a, b = (int(k) for k in pairs.pairs[pair])
-        exact, first = rows.covers[a].exact and rows.covers[b].exact, len(rows.tests)
-        tests = _between(rows, pairs, pair, "outer", outer, epsilon)
-        within = [] if exact or inner is None else _between(rows, pairs, pair, "inner", inner, epsilon)
+        exact, first = boxes.exact(a) and rows.covers[b].exact, len(rows.tests)
+        tests = _beside(rows, boxes, pair, "outer", outer, epsilon)
+        within = [] if exact or inner is None else _beside(rows, boxes, pair, "inner", inner, epsilon)
         rows.tests += [ends for ends, _ in tests + within]
         rows.test_numbers += [numbers for _, numbers in tests + within]
-        of_inner = (first, len(tests)) if exact else (first + len(tests), len(within))
-        of_pairs[places[b], bits[a]] = pair, first, len(tests), *of_inner
+        of_pairs[places[b], bits[a]] = pair, first, len(tests), first + len(tests), len(within)
     counts = [len(own) for own in many.balls.values()]
     frames = [pairs.solids[solid].joint - BASE for solid in many.balls]
     firsts = np.cumsum([0, *counts])[:-1]
@@ -487,6 +530,7 @@ def _crowd(
         "crowd_sets": many.sets,
         "crowd_rows": _i(np.column_stack([frames, firsts, counts]), 3),
         "crowd_balls": _f(np.concatenate(list(many.balls.values())), 4),
+        "crowd_boxes": _f(boxes.rows, 16),
         "crowd_pairs": of_pairs.reshape(-1, 5),
     }
 
