@@ -9,14 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.collision.robots import drawn, random_text
 from wsrender.collision import certificates as certified
 from wsrender.collision import grids, levers, store
 from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
-from wsrender.collision.covers import LEVELS, _segment_distances, cover, from_segment
-from wsrender.collision.distance import frames_of
+from wsrender.collision.covers import LEVELS, _segment_distances, covers, from_segment
+from wsrender.collision.distance import Distances, frames_of
 from wsrender.collision.solids import Solid
 from wsrender.collision.supports import EDGE, PAD, supports
 from wsrender.documents.constraints import Constraints
@@ -51,12 +52,14 @@ def inside(solid: Solid, points: np.ndarray) -> np.ndarray:
     from scipy.spatial import ConvexHull
 
     planes = ConvexHull(solid.points).equations
-    return (points @ planes[:, :3].T + planes[:, 3] <= 0).all(axis=1)
+    found = (np.abs(points) <= np.abs(solid.points).max(axis=0)).all(axis=1)
+    found[found] = (points[found] @ planes[:, :3].T + planes[:, 3] <= 0).all(axis=1)
+    return found
 
 
 @pytest.mark.parametrize("name", SOLIDS)
 def test_covers_hold_the_solid_and_are_held_by_it(name):
-    solid, found = SOLIDS[name], cover(SOLIDS[name])
+    solid, (found,) = SOLIDS[name], covers([SOLIDS[name]])
     points = np.random.default_rng(0).uniform(-0.4, 0.4, (200_000, 3))
     within = inside(solid, points)
     assert len(found.outer) == len(found.inner) == (1 if found.exact else len(LEVELS))
@@ -70,6 +73,33 @@ def test_covers_hold_the_solid_and_are_held_by_it(name):
         assert (around | ~within).all()
         assert (within | ~core).all()
         assert core.any()
+
+
+def test_covers_of_many_are_those_of_each():
+    together = covers(list(SOLIDS.values()))
+    for solid, found in zip(SOLIDS.values(), together, strict=True):
+        (alone,) = covers([solid])
+        for side in ("outer", "inner"):
+            for one, other in zip(getattr(found, side), getattr(alone, side), strict=True):
+                for numbers in ("a", "b", "radius"):
+                    np.testing.assert_array_equal(getattr(one, numbers), getattr(other, numbers))
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_distances_are_cut_and_of_one_frame_as_of_many(name):
+    """To the box, from far outside to deep inside of it."""
+    solids = (SOLIDS["box"], SOLIDS[name])
+    distances, random = Distances(solids), np.random.default_rng(6)
+    T_a = ws.Transform(position_m=(0.1, 0.2, 0.3), rpy_deg=(10, 20, 30)).matrix()
+    T_b = np.tile(np.eye(4), (400, 1, 1))
+    T_b[:, :3, :3] = Rotation.random(400, rng=random).as_matrix()
+    T_b[:, :3, 3] = T_a[:3, 3] + random.normal(size=(400, 3)) * random.uniform(0, 0.5, (400, 1))
+    each = distances.between(0, 1, np.tile(T_a, (400, 1, 1)), T_b, 9.0)
+    assert (each < -0.01).any()
+    for limit in (9.0, 0.1, 1e-5):
+        found = distances.between(0, 1, np.broadcast_to(T_a, (400, 4, 4)), T_b, limit)
+        np.testing.assert_allclose(found, np.minimum(each, limit), rtol=0, atol=1e-7)
+        assert (found == limit).any() == (limit < 9)
 
 
 @pytest.mark.parametrize("seed", [2, 7, 9])
@@ -101,6 +131,24 @@ def test_what_is_proven_holds_at_random_configurations(seed, monkeypatch):
         assert 0 < (label == MIXED).mean() < 0.3
     numbers = (*known.never, *(table.pair for table in known.tables), *known.left)
     assert sorted(numbers) == list(range(len(pairs.pairs)))
+
+
+@pytest.mark.parametrize("touches", [False, True])
+def test_no_box_is_lost_where_a_pair_is_proven(touches, monkeypatch):
+    """Solids come near each other at nine configurations, and touch at one of them, if at all."""
+    monkeypatch.setattr(certified, "AT_A_TIME", 4)
+    pair, random, found = object.__new__(certified._Pair), np.random.default_rng(8), []
+    pair.coordinates, pair.rate, pair.low, pair.high = (0, 1, 2), np.ones(3), np.zeros(3), np.ones(3)
+    for _ in range(20):
+        places, least = random.random((9, 3)), np.full(9, 0.15)
+        least[-1] -= 0.155 * touches
+
+        def distance(values, limit, places=places, least=least):
+            return np.minimum((np.linalg.norm(values[:, None] - places, axis=2) + least).min(axis=1), limit)
+
+        monkeypatch.setattr(pair, "distance", distance, raising=False)
+        found.append(pair.proven())
+    assert set(found) == {MIXED if touches else FREE}
 
 
 def test_programs_are_made_once(tmp_path, monkeypatch):
@@ -160,7 +208,7 @@ def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
 def test_balls_that_are_looked_up_hold_the_cover_and_lie_within_it(kind):
     """Whose capsules hold the solid, and lie within it; of a grid whose border is near, upper bounds end there."""
     solid, margin, epsilon, random = SOLIDS[kind], 0.01, 1e-5, np.random.default_rng(0)
-    own, grid = cover(solid), grids.DistanceGrid(np.zeros(3), 0.001, 1.0, np.zeros((1, 1, 1), np.uint32))
+    (own,), grid = covers([solid]), grids.DistanceGrid(np.zeros(3), 0.001, 1.0, np.zeros((1, 1, 1), np.uint32))
     T = ws.Transform(position_m=(0.1, 0.2, 0.3), rpy_deg=(10, 20, 30)).matrix()
     balls = grids.lookup(grid, 0, T, own, margin, epsilon).balls
     centers, (free, touch) = (balls[:, :3] - T[:3, 3]) @ T[:3, :3], balls[:, 3:].T * grid.quantum

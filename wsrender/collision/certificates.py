@@ -18,11 +18,12 @@ from wsrender.robots.chain import Chain
 
 FREE, HIT, MIXED = 0, 1, 2
 CELLS = 1024  # of a table, along each coordinate
-FIRST_CELLS = 32
+FIRST_CELLS = 4
 # What a cell's label leaves for float32: angles are off by an ulp or two (4e-6 rad), which moves half a metre by 2e-6.
 SLACK_M = 2e-5
-TRIED, LOOKED_AT = 256, 4096  # distances after which nobody tries to prove any more
-FAR_M = 2.0  # beyond which distances need not be told apart
+TRIED, LOOKED_AT = 64, 4096  # distances after which nobody tries to prove any more
+AT_A_TIME = 128  # boxes
+BEYOND = 1.01  # of what decides, where distances are cut: how far solids are beyond that takes time to tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +98,8 @@ class _Pair:
         first = self.coordinates[0] if self.coordinates else 0
         return first, self.coordinates[1] if len(self.coordinates) > 1 else first
 
-    def distance(self, values: np.ndarray) -> np.ndarray:
-        """What is left of the distance over the margin (N,) [m], at values (N, c) of the coordinates.
+    def distance(self, values: np.ndarray, limit: float) -> np.ndarray:
+        """What is left of the distance over the margin (N,) [m], cut at ``limit``, at values (N, c) of the coordinates.
 
         Of a surface at least that, or 0.
         """
@@ -111,12 +112,13 @@ class _Pair:
             T = T @ self.chain.step(joint, q)
         if self.lookup:
             return self.lookup.distance(T)
-        return self.distances.between(self.a, self.b, np.broadcast_to(a.T, T.shape), T @ b.T, FAR_M) - self.margin
+        T_a = np.broadcast_to(a.T, T.shape)
+        return self.distances.between(self.a, self.b, T_a, T @ b.T, limit + self.margin) - self.margin
 
     def label(self, middle: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Of boxes of configurations around their middles (N, c), of widths (c,): FREE, HIT or MIXED (N,)."""
-        distance, change = self.distance(middle), float(self.rate @ widths) / 2 + SLACK_M
-        # A distance that was cut at FAR_M is at least that.
+        change = float(self.rate @ widths) / 2 + SLACK_M
+        distance = self.distance(middle, BEYOND * change)
         return np.where(distance > change, FREE, np.where(distance < -change, HIT, MIXED)).astype(np.int8)
 
     def table(self) -> np.ndarray:
@@ -129,7 +131,7 @@ class _Pair:
         cell = (self.high - self.low) / CELLS
         while len(corners):
             found = self.label(self.low + (corners[:, :count] + size / 2) * cell, size * cell)
-            for (i, j), label in zip(corners[found != MIXED], found[found != MIXED], strict=True):
+            for (i, j), label in zip(corners[found != MIXED].tolist(), found[found != MIXED].tolist(), strict=True):
                 labels[i : i + size, j : j + size] = label
             corners = corners[found == MIXED]
             if size == 1:
@@ -142,20 +144,30 @@ class _Pair:
     def proven(self) -> int:
         """FREE or HIT where that is proven of all configurations, by halving boxes of them; else MIXED."""
         drawn = np.random.default_rng(0).random((TRIED, len(self.coordinates)))
-        touching = self.distance(self.low + drawn * (self.high - self.low)) < 0
+        touching = self.distance(self.low + drawn * (self.high - self.low), SLACK_M) < 0
         if touching.any() and not touching.all():
             return MIXED
         sign = -1.0 if touching.all() else 1.0
-        low, high, looked_at = self.low[None], self.high[None], 0
+        low, high, nearest, looked_at = self.low[None], self.high[None], np.zeros(1), 0
         while len(low):
-            looked_at += len(low)
-            middle, change = (low + high) / 2, (high - low) / 2 * self.rate
-            if looked_at > LOOKED_AT or (sign * (distance := self.distance(middle)) < 0).any():
+            # The nearest first, where a counterexample would be.
+            order = nearest.argsort(kind="stable")
+            low, high, nearest = low[order], high[order], nearest[order]
+            own_low, own_high = low[:AT_A_TIME], high[:AT_A_TIME]
+            if looked_at + len(low) > LOOKED_AT:
                 return MIXED
-            open_ = sign * distance <= change.sum(axis=1) + SLACK_M
-            low, high, middle, longest = low[open_], high[open_], middle[open_], change[open_].argmax(axis=1)
-            rows = np.arange(len(low))
-            left_high, right_low = high.copy(), low.copy()
+            looked_at += len(own_low)
+            middle, change = (own_low + own_high) / 2, (own_high - own_low) / 2 * self.rate
+            most = change.sum(axis=1) + SLACK_M
+            distance = sign * self.distance(middle, BEYOND * float(most.max()))
+            if (distance < 0).any():
+                return MIXED
+            open_ = distance <= most
+            own_low, own_high, middle = own_low[open_], own_high[open_], middle[open_]
+            rows, longest = np.arange(len(own_low)), change[open_].argmax(axis=1)
+            left_high, right_low = own_high.copy(), own_low.copy()
             left_high[rows, longest] = right_low[rows, longest] = middle[rows, longest]
-            low, high = np.concatenate([low, right_low]), np.concatenate([left_high, high])
+            low = np.concatenate([own_low, right_low, low[AT_A_TIME:]])
+            high = np.concatenate([left_high, own_high, high[AT_A_TIME:]])
+            nearest = np.concatenate([distance[open_], distance[open_], nearest[AT_A_TIME:]])
         return FREE if sign > 0 else HIT

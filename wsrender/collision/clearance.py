@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from wsrender.collision.covers import Capsules, outer_cover
+from wsrender.collision.covers import Capsules, outer_covers
 from wsrender.collision.distance import AT_A_TIME, Distances, frames_of
 from wsrender.collision.grids import Lookup
 from wsrender.collision.segments import axes_distance
@@ -68,7 +68,7 @@ class Clearance:
         """Of every solid but half-spaces one capsule around it, and a few."""
         solids = {int(k) for pair in self._asked for k in self.pairs.pairs[pair]}
         bounded = [k for k in solids if self.pairs.solids[k].kind not in ("half_space", "surface")]
-        return {k: outer_cover(self.pairs.solids[k]) for k in bounded}
+        return dict(zip(bounded, outer_covers([self.pairs.solids[k] for k in bounded]), strict=True))
 
     def _bounds(self, frames: np.ndarray) -> np.ndarray:
         """Lower bounds of the signed distances of the pairs that are asked, (P, N) [m]."""

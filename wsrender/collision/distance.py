@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsrender.collision.covers import from_segment, outer_cover
+from wsrender.collision.covers import from_segment, outer_covers
 from wsrender.collision.solids import Pairs, Solid
 from wsrender.collision.supports import center_of
 from wsrender.robots.chain import Chain
@@ -63,8 +63,11 @@ class Distances:
                 mesh = self.model.geom_dataid[number]
                 mujoco.mju_quat2Mat(R, self.model.mesh_quat[mesh])
                 self.own[number, :3, :3], self.own[number, :3, 3] = R.reshape(3, 3), self.model.mesh_pos[mesh]
+        # Of balls around the frames that MuJoCo gives solids; it has 0 for half-spaces.
+        boundless = [solid.kind in ("half_space", "surface") for solid in solids]
+        self._radii = np.where(boundless, np.inf, self.model.geom_rbound[: len(solids)])
         self._local = threading.local()
-        self._capsule = cache(lambda k: outer_cover(self.solids[k])[0])
+        self._capsule = cache(lambda k: outer_covers([self.solids[k]])[0][0])
         self._triangles = cache(self._triangles_of)
 
     def between(self, a: int, b: int, T_a: np.ndarray, T_b: np.ndarray, limit: float) -> np.ndarray:
@@ -76,13 +79,19 @@ class Distances:
             return self._from_surface(a, b, np.linalg.inv(T_a) @ T_b, limit)
         from mujoco import mj_geomDistance as distance
 
-        data = self._data()
-        T_a, T_b = T_a @ self.own[a], T_b @ self.own[b]
-        (at_a, turned_a), (at_b, turned_b) = ((data.geom_xpos[k], data.geom_xmat[k].reshape(3, 3)) for k in (a, b))
-        found, model = np.empty(len(T_a)), self.model
-        rows = zip(T_a[:, :3, 3], T_a[:, :3, :3], T_b[:, :3, 3], T_b[:, :3, :3], strict=True)
-        for i, (position_a, R_a, position_b, R_b) in enumerate(rows):
-            at_a[:], turned_a[:], at_b[:], turned_b[:] = position_a, R_a, position_b, R_b
+        data, model = self._data(), self.model
+        stands = T_a.strides[0] == 0  # one frame for all
+        T_a, T_b = np.broadcast_to(T_a[:1] @ self.own[a], T_a.shape) if stands else T_a @ self.own[a], T_b @ self.own[b]
+        apart = np.linalg.norm(T_a[:, :3, 3] - T_b[:, :3, 3], axis=1) - self._radii[a] - self._radii[b]
+        found, near = np.full(len(T_a), limit), np.flatnonzero(apart < limit)
+        at_a, turned_a, at_b, turned_b = (own[k] for k in (a, b) for own in (data.geom_xpos, data.geom_xmat))
+        positions_a, turns_a = _rows(T_a[near[:1] if stands else near])
+        if stands and len(near):
+            at_a[:], turned_a[:] = positions_a[0], turns_a[0]
+        for k, (i, position_b, turn_b) in enumerate(zip(near.tolist(), *_rows(T_b[near]), strict=True)):
+            if not stands:
+                at_a[:], turned_a[:] = positions_a[k], turns_a[k]
+            at_b[:], turned_b[:] = position_b, turn_b
             found[i] = distance(model, data, a, b, limit, None)
         return self._deep(a, b, T_a, T_b, found)
 
@@ -156,6 +165,11 @@ class Distances:
             self._local.model = copy.copy(self.model) if own else self.model
             self._local.data = mujoco.MjData(self.model)
         return self._local.data
+
+
+def _rows(T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (N, 3) and rotations (N, 9) of frames (N, 4, 4), as MuJoCo keeps them."""
+    return T[:, :3, 3].copy(), T[:, :3, :3].reshape(-1, 9)
 
 
 def _size(solid: Solid) -> np.ndarray:

@@ -4,13 +4,14 @@ Tests are certified: two solids are apart where all capsules around them are, an
 What neither says is open for this pair, and goes on to the narrow phase.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from wsrender.collision.asked import counted
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
-from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
+from wsrender.collision.covers import LEVELS, Capsules, Cover, covers
 from wsrender.collision.crowd import Crowd, crowd, crowded, wide_boxes
 from wsrender.collision.distance import Distances, frames_of
 from wsrender.collision.grids import DistanceGrid, Lookup, lookup, reach_of, surface_grid
@@ -124,19 +125,17 @@ class Program:
 
 def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> Program:
     """The program of pairs of a chain: grids, proofs, tables and covers are made here, which takes seconds."""
-    epsilon, covers = EPSILON * max(2.0, _extent(pairs, chain)), _Covers(pairs.solids)
-    lookups = _lookups(pairs, covers, epsilon)
+    epsilon, made = EPSILON * max(2.0, _extent(pairs, chain)), _Covers(pairs.solids)
+    lookups = _lookups(pairs, made, epsilon)
     known = certificates(pairs, chain, distances or Distances(pairs.solids), lookups)
     convex = [pair for pair in known.left if pair not in lookups]
-    for number in {int(k) for pair in convex for k in pairs.pairs[pair]}:
-        if pairs.solids[number].kind != "half_space":
-            covers.of(number)
-    chosen = _Chosen(pairs, chain, covers.made)
+    made.add({int(k) for pair in convex for k in pairs.pairs[pair]})
+    chosen = _Chosen(pairs, chain, made.made)
     levels = {pair: chosen.levels(pair) for pair in convex}
     left = {pair: lookups[pair] for pair in known.left if pair in lookups}
     named = {pair: chosen.levels(pair, NAMED_COST) for pair in crowded(pairs, convex)}
-    many = crowd(pairs, named, covers.made, _links(chain), epsilon) if named else None
-    return _packed(pairs, chain, known, covers.made, levels, chosen, left, many, named, epsilon)
+    many = crowd(pairs, named, made.made, _links(chain), epsilon) if named else None
+    return _packed(pairs, chain, known, made.made, levels, chosen, left, many, named, epsilon)
 
 
 class _Covers:
@@ -146,28 +145,38 @@ class _Covers:
         self.solids, self.made = solids, dict[int, Cover]()
         self._alike: dict[tuple[object, ...], Cover] = {}
 
+    def add(self, numbers: Iterable[int]) -> None:
+        """Make the covers of solids but half-spaces, where they are not."""
+        wanted = [k for k in sorted(numbers) if k not in self.made and self.solids[k].kind != "half_space"]
+        forms = {k: self._form(self.solids[k]) for k in wanted}
+        new = {form: self.solids[k] for k, form in forms.items() if form not in self._alike}
+        self._alike |= zip(new, covers(list(new.values())), strict=True)
+        self.made |= {k: self._alike[form] for k, form in forms.items()}
+
     def of(self, number: int) -> Cover:
         """The cover of a solid."""
-        if number not in self.made:
-            solid = self.solids[number]
-            form = solid.kind, solid.size.tobytes(), solid.points.tobytes()
-            self.made[number] = self._alike[form] = self._alike.get(form) or cover(solid)
+        self.add([number])
         return self.made[number]
 
+    @staticmethod
+    def _form(solid: Solid) -> tuple[object, ...]:
+        return solid.kind, solid.size.tobytes(), solid.points.tobytes()
 
-def _lookups(pairs: Pairs, covers: _Covers, epsilon: float) -> dict[int, Lookup]:
+
+def _lookups(pairs: Pairs, made: _Covers, epsilon: float) -> dict[int, Lookup]:
     """By pair with a surface, how its other solid is looked up."""
     found: dict[int, Lookup] = {}
     surfaces = [k for k, solid in enumerate(pairs.solids) if solid.kind == "surface"]
+    made.add({int(b) for a, b in pairs.pairs if a in surfaces})
     for surface in counted(surfaces):
         own = [(k, int(pairs.pairs[k, 1])) for k in np.flatnonzero(pairs.pairs[:, 0] == surface).tolist()]
         if not own:
             continue
-        pad = max(reach_of(covers.of(solid), pairs.margin(pair)) for pair, solid in own)
+        pad = max(reach_of(made.of(solid), pairs.margin(pair)) for pair, solid in own)
         grid = surface_grid(_in_base(pairs.solids[surface]), pad)
         for pair, number in own:
             solid = pairs.solids[number]
-            found[pair] = lookup(grid, solid.joint, solid.T, covers.of(number), pairs.margin(pair), epsilon)
+            found[pair] = lookup(grid, solid.joint, solid.T, made.of(number), pairs.margin(pair), epsilon)
     return found
 
 
@@ -195,6 +204,7 @@ class _Chosen:
         self.pairs, self.covers = pairs, covers
         drawn = np.random.default_rng(0).random((DRAWN, chain.n))
         self.frames = frames_of(chain, chain.lower_limits + drawn * (chain.upper_limits - chain.lower_limits))
+        self._turned: dict[int, np.ndarray] = {}
         self._placed: dict[tuple[int, str, int], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     def levels(self, pair: int, alone: float = 0.0) -> tuple[int, int | None]:
@@ -238,27 +248,31 @@ class _Chosen:
 
         ``at``: at these alone; ``itself``: against a box that stands itself, not its cover.
         """
-        below, tests = np.zeros(DRAWN if at is None else len(at), bool), 0
+        below = np.zeros(DRAWN if at is None else len(at), bool)
         middle_b, half_b, radius_b = self._capsules(b, side, level, at)
         if self.pairs.solids[a].kind == "half_space":
             T = self.pairs.solids[a].T
-            for k in range(len(radius_b)):
-                height = (middle_b[:, k] - T[:3, 3]) @ T[:3, 2]
-                below |= height - np.abs(half_b[:, k] @ T[:3, 2]) < radius_b[k] + margin
+            for k, radius in enumerate(radius_b):
+                height = T[:3, 2] @ middle_b[k] - T[:3, 3] @ T[:3, 2]
+                below |= height - np.abs(T[:3, 2] @ half_b[k]) < radius + margin
             return len(radius_b), below
         if itself and self.pairs.solids[a].kind == "box":
             T, size = self.pairs.solids[a].T, self.pairs.solids[a].size
-            for k in range(len(radius_b)):
-                apart = box_distance((middle_b[:, k] - T[:3, 3]) @ T[:3, :3], half_b[:, k] @ T[:3, :3], size)
-                below |= apart < radius_b[k] + margin
+            for k, radius in enumerate(radius_b):
+                apart = box_distance((middle_b[k].T - T[:3, 3]) @ T[:3, :3], half_b[k].T @ T[:3, :3], size)
+                below |= apart < radius + margin
             return len(radius_b), below
         middle_a, half_a, radius_a = self._capsules(a, side, level, at)
-        for i in range(len(radius_a)):
-            for k in range(len(radius_b)):
-                apart = axes_distance(middle_a[:, i], half_a[:, i], middle_b[:, k], half_b[:, k])
-                below |= apart < radius_a[i] + radius_b[k] + margin
-                tests += 1
-        return tests, below
+        for i, k in np.ndindex(len(radius_a), len(radius_b)):
+            # Of the axes only where the balls around both are near, and no test before has answered.
+            sum_ = radius_a[i] + radius_b[k] + margin
+            reach = sum_ + _length(half_a[i]) + _length(half_b[k])
+            between = middle_a[i] - middle_b[k]
+            asked = np.flatnonzero((_dot(between, between) < reach**2) & ~below)
+            if len(asked):
+                axes = (each[:, asked].T for each in (middle_a[i], half_a[i], middle_b[k], half_b[k]))
+                below[asked] = axes_distance(*axes) < sum_
+        return len(radius_a) * len(radius_b), below
 
     def mostly_far(self, pair: int, level: int, epsilon: float) -> list[float]:
         """Of each test outside the squared distance of middles above which none touches, 0 where many are nearer."""
@@ -266,27 +280,40 @@ class _Chosen:
         (middle_a, half_a, radius_a), (middle_b, half_b, radius_b) = (self._capsules(k, "outer", level) for k in (a, b))
         found, everywhere = [], self.pairs.margin(pair) + 2 * epsilon
         for i, k in np.ndindex(len(radius_a), len(radius_b)):
-            lengths = np.linalg.norm(half_a[0, i]) + np.linalg.norm(half_b[0, k])
+            lengths = _length(half_a[i]) + _length(half_b[k])
             far = radius_a[i] + radius_b[k] + lengths + everywhere
-            near = np.linalg.norm(middle_a[:, i] - middle_b[:, k], axis=1) < far
+            between = middle_a[i] - middle_b[k]
+            near = _dot(between, between) < far**2
             found.append(far**2 if lengths > 0 and near.mean() < RARELY else 0.0)
         return found
 
     def _capsules(
         self, solid: int, side: str, level: int, at: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middles and half axes (N, C, 3) in the base's frame, radii (C,); of all configurations or those ``at``."""
+        """Middles and half axes (C, 3, N) in the base's frame, radii (C,); of all configurations or those ``at``."""
         level = 0 if self.covers[solid].exact else level
         key = (solid, side, level)
         if key not in self._placed:
-            own = self.pairs.solids[solid]
+            own, frame = self.pairs.solids[solid], self.pairs.solids[solid].joint + 1
             capsules: Capsules = getattr(self.covers[solid], side)[level]
-            T = self.frames[:, own.joint + 1] @ own.T
-            R = T[:, :3, :3]
-            middle = np.einsum("nij,cj->nci", R, (capsules.a + capsules.b) / 2) + T[:, None, :3, 3]
-            self._placed[key] = middle, np.einsum("nij,cj->nci", R, (capsules.b - capsules.a) / 2), capsules.radius
+            if frame not in self._turned:
+                self._turned[frame] = np.ascontiguousarray(self.frames[:, frame, :3].transpose(2, 1, 0))
+            a, b = (end @ own.T[:3, :3].T + own.T[:3, 3] for end in (capsules.a, capsules.b))
+            *R, p = self._turned[frame]
+            middle, half = (np.tensordot(each, R, axes=1) for each in ((a + b) / 2, (b - a) / 2))
+            self._placed[key] = middle + p, half, capsules.radius
         middle, half, radius = self._placed[key]
-        return (middle, half, radius) if at is None else (middle[at], half[at], radius)
+        return (middle, half, radius) if at is None else (middle[..., at], half[..., at], radius)
+
+
+def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Products (N,) of vectors (3, N)."""
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+
+
+def _length(turned: np.ndarray) -> float:
+    """Of a vector that is turned, (3, N) with N > 0."""
+    return float(np.linalg.norm(turned[:, 0]))
 
 
 class _Rows:
