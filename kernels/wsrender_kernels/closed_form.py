@@ -161,15 +161,78 @@ def closed_labels_kernel(shape: ClosedFormShape, backwards: bool, oriented: bool
     return closed_labels
 
 
+@factory
+def closed_bits_kernel(shape: ClosedFormShape, backwards: bool, cuda: bool) -> wp.Kernel:
+    """Kernel of a class that labels one pose from many bases, of which it makes the frames; ``backwards``: as above.
+
+    In: ``numbers`` of the arm and the pose (WORLD_FIELDS); ``least`` as above; ``motions`` (12 * turns,), a rotation by
+    rows and a position [m] each, and ``positions`` (3 * places,) [m]. Base i has number first + step * i: its motion is
+    that of the number modulo ``turns``, moved by the position of the quotient. Out: where the pose is reached the
+    ``bit`` of ``reached`` (count,) is set, where it is out of reach that of ``missed``; count is at least LANES.
+    """
+    real = shape.real
+    reals, bytes_ = wp.array(dtype=real), wp.array(dtype=wp.uint8)
+
+    @wp.func_native(_bits_body(shape, backwards))
+    def block(
+        task: wp.int32,
+        count: wp.int32,
+        first: wp.int32,
+        step: wp.int32,
+        turns: wp.int32,
+        bit: wp.int32,
+        least: real,
+        numbers: reals,
+        motions: reals,
+        positions: reals,
+        reached: bytes_,
+        missed: bytes_,
+    ): ...
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS if cuda else LONG_OPTIONS, enable_backward=False)
+    def closed_bits(
+        # in
+        count: wp.int32,
+        first: wp.int32,
+        step: wp.int32,
+        turns: wp.int32,
+        bit: wp.int32,
+        least: real,
+        numbers: wp.array(dtype=real),
+        motions: wp.array(dtype=real),
+        positions: wp.array(dtype=real),
+        # out
+        reached: wp.array(dtype=wp.uint8),
+        missed: wp.array(dtype=wp.uint8),
+    ):
+        block(wp.tid(), count, first, step, turns, bit, least, numbers, motions, positions, reached, missed)
+
+    return closed_bits
+
+
+def _bits_body(shape: ClosedFormShape, backwards: bool) -> str:
+    """C++ of one task; lanes that two tasks take set the same bits."""
+    rotation = [f"motions.data[12 * turn + {k}]" for k in range(9)]
+    position = [f"(motions.data[12 * turn + {9 + r}] + positions.data[3 * place + {r}])" for r in range(3)]
+    rows = ["const int number = first + step * at, place = number / turns, turn = number - turns * place;"]
+    store = "reached.data[at] |= best > margin ? bit : 0; missed.data[at] |= best < least ? bit : 0;"
+    rows += rows_of_pose(rotation, position, backwards, "moved")
+    return body(shape, before=_whole_tasks(), first="begin", rows=rows, store=store)
+
+
+def _whole_tasks() -> str:
+    """Where the chain's world begins, and the first pose of a task: the last takes the last LANES poses."""
+    own = [f"const real {name} = numbers.data[{k}];" for k, name in enumerate(WORLD_FIELDS) if k >= len(FIELDS)]
+    return "\n".join([*own, f"const int begin = SMALLER(task * {LANES}, count - {LANES});", ""])
+
+
 def _labels_body(shape: ClosedFormShape, backwards: bool, oriented: bool) -> str:
     """C++ of one task; the last takes the last LANES poses, some of which the one before it takes too."""
-    own = [f"const real {name} = numbers.data[{k}];" for k, name in enumerate(WORLD_FIELDS) if k >= len(FIELDS)]
-    own.append(f"const int begin = SMALLER(task * {LANES}, count - {LANES});")
     turn, rotation = quaternion_rows("quaternions.data", "at") if oriented else ([], list("100010001"))
     position = [f"positions.data[3 * at + {r}]" for r in range(3)]
     rows = [*turn, *rows_of_pose(rotation, position, backwards, "moved")]
     store = f"labels.data[at] = best > margin ? {REACHABLE} : best < least ? {UNREACHABLE} : {UNDECIDED};"
-    return body(shape, before="\n".join([*own, ""]), first="begin", rows=rows, store=store)
+    return body(shape, before=_whole_tasks(), first="begin", rows=rows, store=store)
 
 
 def quaternion_rows(data: str, at: str) -> tuple[list[str], list[str]]:

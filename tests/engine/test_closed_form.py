@@ -14,7 +14,7 @@ from wsrender_kernels.closed_form import closed_form_kernel
 import wsrender as ws
 from tests.reference import closed_form_inverse
 from tests.reference.arms_by_axes import PARALLEL, RELATIONS, axes_of, chain_of, frame, random_arm, reversed_chain
-from wsrender.engine.closed_form import closed_postures, placed_slacks, shape_of
+from wsrender.engine.closed_form import CLOSED_MARGIN, closed_postures, placed_bits, placed_slacks, shape_of
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.reachable_box import reachable_box
@@ -344,6 +344,30 @@ def test_moved_bases_reach_what_is_moved_the_other_way(backwards):
         moved = chain.T_world_base @ np.linalg.inv(bases) @ pose
         assert np.abs(slack - closed_postures(closed, moved, device="cpu").slack).max() < 1e-8
     assert 0.02 < (found > 0).mean() < 0.98
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("numbers", [range(4, 10), range(3, 7 * 400), range(35, 7 * 400, 7), range(2, 7 * 400, 3)])
+def test_bits_of_placed_bases_are_those_of_their_slacks(backwards, numbers):
+    """Fewer bases than a task takes, all that follow one another, some of each position, and some at any."""
+    chain = random_arm(RELATIONS[0], 5)
+    chain = reversed_chain(chain) if backwards else chain
+    closed, random, origin = ClosedForm.of(chain), np.random.default_rng(2), np.array([0.2, -0.1, 0.3])
+    motions, positions = np.tile(np.eye(4), (7, 1, 1)), random.uniform(-0.5, 0.5, (400, 3)) + origin
+    motions[:, :3, :3] = Rotation.random(7, random_state=1).as_matrix()
+    motions[:, :3, 3] = random.uniform(-0.1, 0.1, (7, 3))
+    bases = motions[np.array(numbers) % 7]
+    bases[:, :3, 3] += positions[np.array(numbers) // 7] - origin
+    T, targets = chain.poses(anywhere(chain, 11)), np.array([0, 1, 2, 3, 7, 8, 9, 10, 15, 16, 25])
+    asked = {"origin": origin, "margin": 1e-3, "device": "cpu", "threads": 2}
+    found = placed_bits(closed, motions, positions, numbers, T, targets, **asked)
+    slack = placed_slacks(closed, bases, T, device="cpu", threads=2)
+    for bits, wanted in zip(found, (slack > CLOSED_MARGIN, slack < -1e-3), strict=True):
+        assert bits.shape == (4, len(numbers))
+        each = np.unpackbits(bits, axis=0, bitorder="little")
+        np.testing.assert_array_equal(each[targets], wanted)
+        assert not np.delete(each, targets, axis=0).any()
+    assert 0 < (slack < -1e-3).sum() < slack.size and (slack > CLOSED_MARGIN).any()
 
 
 def test_what_is_not_a_number_is_undecided():

@@ -31,7 +31,8 @@ def searched(near_m, solutions):
         proven=np.zeros(1, bool),
     )
     solver = SimpleNamespace(
-        chain=chain, whole=chain, seed=0, closed=None, tries=tries, features=lambda position, orientation: position,
+        chain=chain, whole=chain, kind="position", seed=0, closed=None, tries=tries,
+        features=lambda position, orientation: position,
         features_at=lambda q: np.tile([near_m, 0.0, 0.0], (len(q), 1)), solve=lambda *_: nothing,
     )  # fmt: skip
     admission = SimpleNamespace(names=("some",), rejected=lambda q, targets: np.ones(len(q), np.int8))

@@ -103,8 +103,16 @@ class PlacementSpace(Document):
 
     def coordinates(self, numbers: np.ndarray) -> np.ndarray:
         """Coordinates (N, 6) [m and °] of placements by number (N,): yaw changes first, x last."""
-        at = np.unravel_index(numbers, self.shape)
-        return np.stack([self.values(name)[k] for name, k in zip(COORDINATES, at, strict=True)], axis=1)
+        at, found = np.unravel_index(numbers, self.shape), np.empty((len(numbers), len(COORDINATES)))
+        for column, (name, k) in enumerate(zip(COORDINATES, at, strict=True)):
+            values = self.values(name)
+            found[:, column] = values[k] if len(values) > 1 else values[0]
+        return found
+
+    def column(self, name: str) -> np.ndarray:
+        """A coordinate of all placements, (count,) [m or °], in their order."""
+        values = self.values(name).reshape([-1 if each == name else 1 for each in COORDINATES])
+        return np.broadcast_to(values, self.shape).ravel()
 
     @property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:

@@ -7,6 +7,7 @@ from wsrender.engine.closed_form import (
     ClosedPostures,
     closed_labels,
     closed_postures,
+    placed_bits,
     placed_slacks,
 )
 from wsrender.engine.devices import devices_of, target_of, thread_count
@@ -59,6 +60,7 @@ __all__ = [
     "label_bytes",
     "merge",
     "open_wrist_postures",
+    "placed_bits",
     "placed_slacks",
     "poses_reached",
     "sampled_positions",

@@ -15,6 +15,7 @@ from wsrender_kernels.closed_form import (
     TARGET_ROWS,
     WORLD_FIELDS,
     ClosedFormShape,
+    closed_bits_kernel,
     closed_form_kernel,
     closed_labels_kernel,
 )
@@ -27,6 +28,8 @@ from wsrender.robots.closed_form.numbers import packed
 
 CLOSED_MARGIN = MARGIN[wp.float64]  # slack below which nothing is decided in float64
 BATCH, KEPT_BATCH = 1 << 18, 1 << 14  # poses of a launch: their postures take 896 bytes each
+PLACED_BATCH = 1 << 22  # bases of a launch on a GPU, of which bits come back
+LARGEST_NUMBER = 1 << 30  # of a base in its batch, in kernels
 LEAST_SHARE = 1 << 10  # poses that are worth a thread
 
 
@@ -147,6 +150,62 @@ def placed_slacks(
     with ThreadPoolExecutor(len(workers)) as pool:
         list(pool.map(run, enumerate(batches)))
     return found
+
+
+def placed_bits(
+    closed: ClosedForm,
+    motions: np.ndarray,
+    positions: np.ndarray,
+    numbers: range,
+    T_world_tip: np.ndarray,
+    targets: np.ndarray,
+    *,
+    origin: np.ndarray,
+    margin: float,
+    device: str = "auto",
+    threads: int | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which bases reach poses (K, 4, 4), and which are proven not to, as bits: (B, N) uint8 each, of N ``numbers``.
+
+    A base of number i stands at ``motions`` (A, 4, 4) number i modulo A, moved by ``positions`` (S, 3) [m] number
+    i // A. Poses are seen from the ``origin`` (3,) [m] of the world of those. Pose k sets bit ``targets[k]`` modulo 8
+    of byte ``targets[k]`` // 8, of as many bytes as the largest needs: reached where the slack is above that of
+    rounding, missed where it is below minus the ``margin``.
+
+    Bases are made on the device, where a table of the rotations and one of the positions go; bits come back.
+    """
+    devices, real = devices_of(device), REAL["float64"]
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    backwards = not closed.solved.axes.reversed
+    kernel = loaded(closed_bits_kernel(shape_of(closed, "float64", False), backwards, devices[0].is_cuda), *devices)
+    A, rows = len(motions), np.concatenate([motions[:, :3, :3].reshape(-1, 9), motions[:, :3, 3]], axis=1)
+    world = {f"origin{k}": x for k, x in enumerate(origin)} | {"scale": 1 / closed.solved.axes.reach}
+    arms = np.stack([packed(closed.numbers_to(T) | world, WORLD_FIELDS) for T in T_world_tip])
+    found = np.zeros((2, int(targets.max()) // 8 + 1, len(numbers)), np.uint8)
+    size = min(max(LEAST_SHARE, -(-len(numbers) // len(workers))), PLACED_BATCH if devices[0].is_cuda else BATCH)
+    size = min(size, max(LANES, LARGEST_NUMBER // numbers.step))
+
+    def run(numbered: tuple[int, int]) -> None:
+        number, begin = numbered
+        of, device = numbers[begin : begin + size], workers[number % len(workers)]
+        whole = max(len(of), LANES)  # a task of the CPU takes as many
+        start, first = divmod(of.start, A)
+        places = np.arange(start, start + (first + (whole - 1) * of.step) // A + 1)
+        tables = [np.ravel(arms), rows, positions[np.minimum(places, len(positions) - 1)]]
+        given, *rest = (given_array(part, real, device) for part in tables)
+        bits = wp.zeros(found.shape[0] * found.shape[1] * whole, dtype=wp.uint8, device=device)
+        dim, F = whole if device.is_cuda else -(-whole // LANES), len(WORLD_FIELDS)
+        for k, target in enumerate(targets.tolist()):
+            reached, missed = (
+                bits[at * whole : (at + 1) * whole] for at in (target // 8, target // 8 + found.shape[1])
+            )
+            inputs = [whole, first, of.step, A, 1 << target % 8, -margin, given[k * F : (k + 1) * F], *rest]
+            launch(kernel, dim=dim, inputs=inputs, outputs=[reached, missed], device=device)
+        found[..., begin : begin + len(of)] = bits.numpy().reshape(*found.shape[:2], whole)[..., : len(of)]
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        list(pool.map(run, enumerate(range(0, len(numbers), size))))
+    return found[0], found[1]
 
 
 def shape_of(closed: ClosedForm, precision: str, keep: bool) -> ClosedFormShape:

@@ -58,7 +58,7 @@ class Admissible:
     ``q`` (N, n): admitted, else rejected, else nearest; ``distance_m``, ``angle_rad`` (N,): what is left there to the
     target; ``label`` (N,) int8, BLOCKED among them; ``rejected`` (N, C): solutions that each of the constraints was the
     first to reject; ``near_m`` (N,): how near an admitted sample is, by the residual that tries reduce; ``proven`` (N,)
-    bool: the target is known to be out of reach, or to be blocked.
+    bool: the target is known to be out of reach, or to be blocked; ``met`` (N,) bool: a try ended at the pose itself.
     """
 
     q: np.ndarray
@@ -68,6 +68,7 @@ class Admissible:
     rejected: np.ndarray
     near_m: np.ndarray
     proven: np.ndarray
+    met: np.ndarray
 
     @property
     def reason(self) -> np.ndarray:
@@ -178,6 +179,7 @@ class AdmissibleSearch:
         # constraints may admit what they reject of the posture.
         known = np.all(none | alone, axis=1)
         tries.reached[(none & known[:, None]).ravel()] = False
+        self._leave_those_beside(found, at, tries)
         found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
         all_rejected = known & (solved == alone).all(axis=1) & solved.any(axis=1) & (found.label[at] == UNDECIDED)
@@ -196,6 +198,7 @@ class AdmissibleSearch:
             np.full(count, UNDECIDED, np.int8),
             np.zeros((count, len(self.admission.names)), np.int32),
             self._tree.query(features, eps=EPS)[0] if self._tree else np.full(count, np.inf),
+            np.zeros(count, bool),
             np.zeros(count, bool),
         )
 
@@ -302,7 +305,20 @@ class AdmissibleSearch:
             return
         targets = np.repeat(at, starts.shape[1])
         tries = self.solver.tries(starts.reshape(len(targets), -1), position[targets], _some(orientation, targets))
+        self._leave_those_beside(found, at, tries)
         found.take(at, tries, self._reasons(tries, targets))
+
+    def _leave_those_beside(self, found: Admissible, at: np.ndarray, tries: Tries) -> None:
+        """Leave out tries of poses ``at`` (P,) that end beside a pose, within the tolerances, which others meet.
+
+        Limits stop them there, and near a singular pose that may be far from every posture: whether one comes by there
+        depends on rounding.
+        """
+        if self.solver.kind != "pose":
+            return
+        meets = (tries.reached & self.solver.meets(tries)).reshape(len(at), -1)
+        found.met[at] |= meets.any(axis=1)
+        tries.reached[:] &= (meets | ~found.met[at, None]).ravel()
 
     def _reasons(self, tries: Tries, targets: np.ndarray) -> np.ndarray:
         """What rejects those tries (T,) that reached their ``targets``, by number, 0: nothing."""

@@ -13,10 +13,12 @@ from wsrender.reach.free_joint_labels import FreeJointLabels
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.nearly_closed_labels import NearlyClosedLabels
 from wsrender.reach.open_wrist_labels import OpenWristLabels
+from wsrender.reach.posture_solver import PoseHolder
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
 from wsrender.robots.closed_form import ClosedForm, Form, FreeJointForm, NearlyClosedForm, OpenWristForm, form_of
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
+from wsrender.tolerances import TOLERANCES
 
 BATCH = 1 << 15  # targets that are solved together
 MOST_TRIES = 1 << 17  # held in memory at a time, and a launch
@@ -179,11 +181,23 @@ class InverseSolver:
         search.exhaust(search.pending[known[search.pending]])
 
     def tries(self, starts: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> Tries:
-        """One try from each configuration (N, n) to its target; joints that do not move it keep their values."""
-        tries = self._tries(_targets(position, orientation), starts[:, self._kept])
+        """One try from each configuration (N, n) to its target; joints that do not move it keep their values.
+
+        Those that reach a whole pose end as near to it as rounding lets them.
+        """
+        targets = _targets(position, orientation)
+        tries = self._tries(targets, starts[:, self._kept])
+        if self.kind == "pose":
+            tries = self._polished(tries, targets)
         q = starts.copy()
         q[:, self._kept] = self._within_a_turn(tries.q)
         return replace(tries, q=q)
+
+    def meets(self, tries: Tries) -> np.ndarray:
+        """Whether tries end at their targets but for rounding, not beside them within the tolerances, (N,) bool."""
+        rounding = TOLERANCES["float64"]
+        there = tries.distance <= rounding.position(self.chain.reach)
+        return there & (tries.angle <= rounding.kinematics)
 
     def positions_at(self, q: np.ndarray) -> np.ndarray:
         """Positions (N, 3) [m] of the end point at configurations (N, n)."""
@@ -236,6 +250,31 @@ class InverseSolver:
             return tries
         options["precision"], at = "float64", np.flatnonzero(tries.reached)
         return tries.replaced(at, solve_inverse(self.chain, targets[at], tries.q[at], accuracy, **options))
+
+    def _polished(self, tries: Tries, targets: np.ndarray) -> Tries:
+        """The same, those that reached whole poses (T, 12) taken on until they stall.
+
+        Near singular poses what is within the tolerances holds postures of any other turn of some joints. Where tries
+        enter that first depends on rounding, and what constraints say of them would.
+        """
+        at = np.flatnonzero(tries.reached)
+        accuracy = replace(self.accuracy, position_m=0.0, angle_rad=0.0, flatness=0.0)
+        options = self._execution | {"precision": "float64"}
+        on = solve_inverse(self.chain, targets[at], tries.q[at], accuracy, **options)
+        if len(left := np.flatnonzero(~self.meets(on))):
+            on = on.replaced(left, self._held_at(on.q[left], targets[at[left]]))
+        near = (on.distance <= self.accuracy.position_m) & (on.angle <= self.accuracy.angle_rad)
+        on.reached[:] = True
+        return tries.replaced(at[near], on.taken(np.flatnonzero(near)))
+
+    def _held_at(self, q: np.ndarray, targets: np.ndarray) -> Tries:
+        """Tries that stalled at ``q`` (T, n) near whole poses (T, 12), taken on with hardly any damping."""
+        chain, T = self.chain.relative_to(self.chain.origin), np.tile(np.eye(4), (len(q), 1, 1))
+        T[:, :3, 3] = targets[:, :3] - self.chain.origin
+        T[:, :3, :3] = targets[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
+        best, left = PoseHolder(chain).polished(q, T)
+        no = np.zeros(len(q), bool)
+        return Tries(best, np.linalg.norm(left[:, :3], axis=1), np.linalg.norm(left[:, 3:], axis=1), no, no)
 
     def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace.

@@ -6,7 +6,8 @@ arms, are tried from many starts (`InverseSolver`).
 Under constraints a target is served where a configuration is admitted: of all postures, or else of a search.
 """
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,7 +15,8 @@ from typing import Self
 
 import numpy as np
 
-from wsrender.engine import evaluate_samples, placed_slacks
+from wsrender.documents.placements import IN_DEGREES, PlacementSpace, placed
+from wsrender.engine import evaluate_samples, placed_bits, placed_slacks
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.host_function import HostConstraint
@@ -167,6 +169,60 @@ class Placements:
             for array, each in zip(found.arrays, part.arrays, strict=True):
                 array.ravel()[at] = each
         return found
+
+    @property
+    def by_bits(self) -> bool:
+        """Whether `bits` can tell: closed forms decide, without constraints and a value."""
+        return self.solver.closed is not None and self.admission is None
+
+    def bits(self, space: PlacementSpace, numbers: range, targets: np.ndarray) -> np.ndarray:
+        """Labels that `decide` has of N placements of a ``space`` by number, as bits (3, B, N) uint8.
+
+        Served, undecided, and proven to be out of reach. Target k sets bit ``targets[k]`` modulo 8 of byte
+        ``targets[k]`` // 8. What closed forms leave open is decided pair by pair.
+        """
+        turns = math.prod(space.shape[3:])
+        first, last = (number // turns for number in (numbers[0], numbers[-1]))
+        angles, positions = space.coordinates(np.arange(turns)), space.coordinates(turns * np.arange(first, last + 1))
+        angles[:, :3] = 0.0
+        moved = range(numbers.start - turns * first, numbers.stop - turns * first, numbers.step)
+        served, proven = self._certain_bits(placed(angles) @ self.base.T_frame_base, positions[:, :3], moved, targets)
+        asked = np.zeros((8 * len(served), 1), bool)
+        asked[targets] = True
+        undecided, left = np.zeros_like(served), ~(served | proven) & _packed(asked)
+        for places in _parts(np.flatnonzero(left.any(axis=0)), BATCH // len(targets)):
+            coordinates = space.coordinates(numbers.start + numbers.step * places)
+            place, k = np.nonzero(np.unpackbits(left[:, places], axis=0, bitorder="little")[targets].T)
+            at, bases = place * len(targets) + k, self._bases(placed(coordinates))
+            of, _ = self._decided(at, bases, coordinates * IN_DEGREES)
+            masks = of.label == REACHABLE, of.label == UNDECIDED, of.proven
+            for bits, mask in zip((served, undecided, proven), masks, strict=True):
+                each = np.zeros((8 * len(bits), len(places)), bool)
+                each[targets[k], place] = mask
+                bits[:, places] |= _packed(each)
+        return np.stack([served, undecided, proven])
+
+    def _certain_bits(
+        self, motions: np.ndarray, positions: np.ndarray, numbers: range, targets: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What closed forms alone say of bases as `placed_bits` has them: served, and proven to be out of reach."""
+        closed = self.solver.closed
+        assert closed
+        if isinstance(closed, ClosedLabels):
+            execution = {"device": closed.device, "threads": closed.threads}
+            asked = {"origin": self._origin, "margin": closed.margin} | execution
+            return placed_bits(closed.form, motions, positions, numbers, self._targets, targets, **asked)
+        place, turn = np.divmod(np.array(numbers), len(motions))
+        back = self._seen_from(motions)
+        T = back[turn]
+        T[:, :3, 3] -= np.einsum("nij,nj->ni", T[:, :3, :3], positions[place] - self._origin)
+        label = closed.labels_from(T, self._targets).reshape(len(T), -1)
+        each = np.zeros((len(T), 8 * (int(targets.max()) // 8 + 1)), bool)
+        found = []
+        for name in (REACHABLE, UNREACHABLE):
+            each[:, targets] = label == name
+            found.append(np.ascontiguousarray(np.packbits(each, axis=1, bitorder="little").T))
+        return found[0], found[1]
 
     def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
         """Of one placement, (1, …) as above, what is known (K,), and configurations (K, n) [rad or m].
@@ -354,6 +410,19 @@ class PlacementsOfKinds:
         """As `Placements.decide`."""
         return self._joined([part.decide(coordinates, T_world_frame) for part in self.parts])
 
+    @property
+    def by_bits(self) -> bool:
+        """As `Placements.by_bits`, of all parts."""
+        return all(part.by_bits for part in self.parts)
+
+    def bits(self, space: PlacementSpace, numbers: range) -> np.ndarray:
+        """As `Placements.bits`, (3, N, B), target k that of byte k // 8 and weight 2^(k % 8)."""
+        found = np.zeros((3, -(-sum(map(len, self.at)) // 8), len(numbers)), np.uint8)
+        for part, at in zip(self.parts, self.at, strict=True):
+            bits = part.bits(space, numbers, at)
+            found[:, : bits.shape[1]] |= bits
+        return np.ascontiguousarray(found.transpose(0, 2, 1))
+
     def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
         """As `Placements.configurations`."""
         found = [part.configurations(coordinates, T_world_frame) for part in self.parts]
@@ -381,3 +450,14 @@ class PlacementsOfKinds:
     @cached_property
     def _back(self) -> np.ndarray:
         return np.argsort(np.concatenate(self.at), kind="stable")
+
+
+def _parts(at: np.ndarray, count: int) -> Iterator[np.ndarray]:
+    """Numbers (P,) in parts of at most so many, and at least one."""
+    each = max(1, count)
+    return (at[first : first + each] for first in range(0, len(at), each))
+
+
+def _packed(mask: np.ndarray) -> np.ndarray:
+    """Bits (B, N) uint8 of (8 B, N) bool."""
+    return np.packbits(mask, axis=0, bitorder="little")

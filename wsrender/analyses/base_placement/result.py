@@ -40,7 +40,7 @@ class PlacementMap:
         self.second = second
         self.weighted = job.weights is not None or bool((weights != 1).any())
         self.edge = job.mounted if isinstance(job.mounting, TableEdge) else None  # where it holds bases, (X, Y)
-        self.served = np.bitwise_count(bits["served"]).sum(axis=1, dtype=np.int32)
+        self.served = sum(np.bitwise_count(column).astype(np.int32) for column in bits["served"].T)
 
     @cached_property
     def weight(self) -> np.ndarray:
@@ -86,9 +86,7 @@ class PlacementMap:
     @property
     def table(self) -> Table:
         """A row for each placement, yaw first, x last."""
-        coordinates = self.over.coordinates(np.arange(self.over.count))
-        columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
-        columns |= self._values(slice(None))
+        columns = {name: self.over.column(name) for name in self.over.ranges} | self._values(slice(None))
         columns |= {f"{name}_bits": bits for name, bits in self.bits.items()}
         if self.edge is not None:
             columns["on_the_edge"] = np.repeat(self.edge.ravel(), math.prod(self.over.shape[2:])).astype(np.uint8)
@@ -159,22 +157,32 @@ class PlacementMap:
         if not self.served.any():
             return None
         best = (self._order == self._order.max()).reshape(self._sizes or [1])
-        frames = framed(self.over)
-        for axis, (name, (before, _, after)) in enumerate(zip(self.over.ranges, frames, strict=True)):
+        frames, wraps = framed(self.over), [_whole_turn(self.over, name) for name in self.over.ranges]
+        for axis, wrap in enumerate(wraps):
+            first = best.take([0], axis)
+            if wrap and (best == first).all():  # what is alike all around is as deep in every direction
+                best, frames[axis] = first, (0, 1, 0)
+        sizes = best.shape
+        for axis, (wrap, (before, _, after)) in enumerate(zip(wraps, frames, strict=True)):
             pads = [(before, after) if k == axis else (0, 0) for k in range(best.ndim)]
-            best = np.pad(best, pads, mode="wrap") if _whole_turn(self.over, name) else np.pad(best, pads)
+            best = np.pad(best, pads, mode="wrap") if wrap else np.pad(best, pads)
         depth = np.ones(best.shape) if best.all() else _depth(best)
         inner = tuple(slice(before, before + size) for before, size, _ in frames)
-        return int(np.argmax(depth[inner]))
+        deepest = np.unravel_index(np.argmax(depth[inner]), sizes)
+        return int(np.ravel_multi_index(deepest, self._sizes or [1]))
 
     def best_cells(self, count: int) -> np.ndarray:
         """Numbers (B,) of the `best` placement, which there must be, and of others than which none beside is better."""
+        if count == 1:
+            return np.array([self.best])
         order = self._order.reshape(self._sizes or [1])
         highest = order
         for axis, name in enumerate(self.over.ranges):
             mode = "wrap" if _whole_turn(self.over, name) else "nearest"
             highest = maximum_filter1d(highest, 3, axis, mode=mode)
         peaks = np.flatnonzero(order == highest)
+        most = peaks[order.ravel()[peaks] == order.max()]
+        peaks = most if len(most) > count else peaks
         peaks = peaks[np.argsort(-order.ravel()[peaks], kind="stable")]
         return np.array([self.best, *peaks[peaks != self.best]][:count])
 

@@ -33,7 +33,7 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.constraints import Constraints
-from wsrender.documents.placements import ANGLES, IN_DEGREES, mounted, placed
+from wsrender.documents.placements import ANGLES, IN_DEGREES, TableEdge, mounted, placed
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
@@ -328,11 +328,15 @@ class BasePlacementAnalysis(Analysis):
         search, parts = self._placements(execution.threads), []
         others = [self._placements(execution.threads, score) for score in self.scores[1:]]
         for begin in range(start, end, each):
-            numbers = np.arange(begin, min(begin + each, end))
-            rows = self._rows(self._decided(search, numbers[:: self._alike]))
-            rows += [least_value(self._decided(other, numbers[:: self._alike]).value) for other in others]
+            numbers = range(begin, min(begin + each, end), self._alike)
+            if search.by_bits and not isinstance(self.job.mounting, TableEdge):
+                served, undecided, proven = search.bits(self.job.over, numbers)
+                rows = [served, undecided, proven]
+            else:
+                rows = self._rows(self._decided(search, np.array(numbers)))
+                rows += [least_value(self._decided(other, np.array(numbers)).value) for other in others]
             parts.append([np.repeat(row, self._alike, axis=0) for row in rows])
-            tell((int(numbers[-1]) + 1) * K - first)
+            tell((numbers[-1] + self._alike) * K - first)
         arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
         names = [*self._names_of_bits, *("score", "score_2")[: len(self.scores)]]
         return rows_of_shard(first, dict(zip(names, arrays, strict=True)))

@@ -52,7 +52,11 @@ class ClosedForm:
 
     def numbers(self, unlimited: bool = False) -> dict[str, float]:
         """What kernels take, by name; ``unlimited``: as if hinges had no limits."""
-        return self._geometry | limit_numbers(self.solved, unlimited)
+        return self._geometry | (limit_numbers(self.solved, True) if unlimited else self._limits)
+
+    @cached_property
+    def _limits(self) -> dict[str, float]:
+        return limit_numbers(self.solved)
 
     def targets(self, T: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) in the world as those that are solved for, (N, 12): rotation by rows, position [reach]."""
