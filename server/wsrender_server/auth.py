@@ -54,6 +54,7 @@ class Authenticator:
         self._file_keys = {} if settings.api_key_file is None else read_key_file(settings.api_key_file)
         self._required = bool(self._file_keys)
         self._looked = -LOOK_AGAIN_S
+        self._looking: asyncio.Task[bool] | None = None
         self._admitted: dict[str, tuple[float, bool]] = {}  # keys that streams asked about, and when
 
     @property
@@ -67,10 +68,14 @@ class Authenticator:
             self._required, self._looked = self._store.has_key(), now
         return self._required
 
-    @property
-    def asks_database(self) -> bool:
-        """Whether the next question needs the database: then it is asked in a thread."""
-        return self._required or monotonic() - self._looked >= LOOK_AGAIN_S
+    async def is_required(self) -> bool:
+        """`required` for a coroutine: whoever asks while the database is asked in a thread shares that answer."""
+        if self._required or monotonic() - self._looked < LOOK_AGAIN_S:
+            return self._required
+        if self._looking is None or self._looking.done():
+            self._looking = asyncio.create_task(run_in_threadpool(lambda: self.required))
+            self._looking.add_done_callback(lambda task: task.cancelled() or task.exception())  # told to who asked
+        return await asyncio.shield(self._looking)
 
     def principal(self, secret: str) -> Principal | None:
         """Whose secret it is; None for an unknown or revoked key."""
@@ -143,19 +148,22 @@ def needs(right: Scope) -> Callable[..., Awaitable[Principal]]:
         basic: Annotated[HTTPBasicCredentials | None, Security(_basic)],
     ) -> Principal:
         secret = basic.password if basic else bearer and bearer.credentials
-        if request.app.state.authenticator.asks_database:
-            asking = await run_in_threadpool(entitled, request, secret, right)
+        if await request.app.state.authenticator.is_required():  # which key it is, the database knows
+            asking = await run_in_threadpool(entitled, request, secret, right, True)
         else:
-            asking = entitled(request, secret, right)
+            asking = entitled(request, secret, right, False)
         request.state.owner = asking.owner
         return asking
 
     return principal
 
 
-def entitled(connection: HTTPConnection, secret: str | None, right: Scope) -> Principal:
-    """Who asks by a secret, if they have a right; raises HttpProblem 401 or 403."""
-    asking = _asking(connection, secret)
+def entitled(connection: HTTPConnection, secret: str | None, right: Scope, required: bool | None = None) -> Principal:
+    """Who asks by a secret, if they have a right; raises HttpProblem 401 or 403.
+
+    ``required`` is whether a key is needed, None where whoever calls has not asked: then the database may be.
+    """
+    asking = _asking(connection, secret, required)
     if right not in asking.rights:
         who = "a server without keys" if asking is LOCAL_USER else "this key"
         raise HttpProblem(403, f"{who} lacks the scope {right!r}", "insufficient_scope")
@@ -202,9 +210,9 @@ Submitter = Annotated[Principal, Depends(needs("submit"))]
 Administrator = Annotated[Principal, Depends(needs("admin"))]
 
 
-def _asking(connection: HTTPConnection, secret: str | None) -> Principal:
+def _asking(connection: HTTPConnection, secret: str | None, required: bool | None) -> Principal:
     authenticator: Authenticator = connection.app.state.authenticator
-    if not authenticator.required:
+    if not (authenticator.required if required is None else required):
         _check_host(connection)
         return LOCAL_USER
     if secret is None:

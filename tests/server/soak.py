@@ -25,7 +25,7 @@ from urllib.parse import urlsplit
 
 import psutil
 from wsrender_server.jobs import backups
-from wsrender_server.jobs.retention import Retention
+from wsrender_server.jobs.retention import GRACE, Retention
 from wsrender_server.jobs.store import open_store
 from wsrender_server.local_server import LocalServer
 from wsrender_server.settings import Settings
@@ -40,6 +40,9 @@ ROUNDS = 50
 PATIENCE_S = 600.0
 GONE_S = 20.0  # within which nothing is left of what was killed
 JOBS, MINUTES, SETTLED = 3000, 60.0, 10.0  # of the hour: jobs, minutes, and those after which all is level
+KEPT_BYTES, INTERVAL_S = 4_000_000, 5
+# After which a result counts among those that are limited; younger ones are kept, as many as the pace gives.
+YOUNG_S = GRACE.total_seconds() + 3 * INTERVAL_S
 FOLDERS = ("results", "partials", "scratch")
 
 
@@ -92,7 +95,7 @@ def kills(rounds: int = ROUNDS, postgres: bool = False, seed: int = 0) -> dict[s
 
 def small_jobs(jobs: int = JOBS, minutes: float = MINUTES, settled: float = SETTLED) -> dict[str, Any]:
     """Figures of a server that gets small jobs at an even pace, with retention: what it takes, minute by minute."""
-    limits = {"KEEP_RESULTS_BYTES": 4_000_000, "KEEP_JOBS_PER_OWNER": 100, "RETENTION_INTERVAL_S": 5}
+    limits = {"KEEP_RESULTS_BYTES": KEPT_BYTES, "KEEP_JOBS_PER_OWNER": 100, "RETENTION_INTERVAL_S": INTERVAL_S}
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="wsrender-soak-")))
         stack.enter_context(_environment(**{f"WSRENDER_{name}": str(value) for name, value in limits.items()}))
@@ -150,7 +153,8 @@ ALLOWED = {
     "resident MiB": (1.05, 20.0),
     "descriptors": (1.0, 10.0),
     "threads": (1.0, 5.0),
-    "disk MiB": (1.1, 2.0),
+    "old results MiB": (0.0, 1.1 * KEPT_BYTES / 2**20),  # however many there were before
+    "other disk MiB": (1.1, 2.0),
     "rows": (1.1, 50.0),
 }
 PARTS = {
@@ -294,19 +298,24 @@ def _taken(server: LocalServer) -> dict[str, float]:
             memory += process.memory_info().rss
             descriptors += process.num_fds()
             threads += process.num_threads()
-    sizes = []
-    for folder, _, names in os.walk(server.data_dir):  # folders go while one looks
-        for name in names:
-            with suppress(FileNotFoundError):
-                sizes.append(0 if name.endswith(".log") else Path(folder, name).stat().st_size)
     with closing(sqlite3.connect(server.data_dir / "wsrender.db")) as connection:
         tables = ("jobs", "computations", "events", "labels", "artifacts")
         rows = sum(connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in tables)
+        results = dict(connection.execute("SELECT id, used_at / 1e6 FROM computations WHERE state = 'succeeded'"))
+    taken = old = 0
+    for folder, _, names in os.walk(server.data_dir):  # folders go while one looks
+        used_at = results.get(Path(folder).name)
+        for name in names:
+            with suppress(FileNotFoundError):
+                size = 0 if name.endswith(".log") else Path(folder, name).stat().st_size
+                taken += size if used_at is None else 0
+                old += size if used_at is not None and time.time() - used_at > YOUNG_S else 0
     return {
         "resident MiB": memory / 2**20,
         "descriptors": descriptors,
         "threads": threads,
-        "disk MiB": sum(sizes) / 2**20,
+        "old results MiB": old / 2**20,
+        "other disk MiB": taken / 2**20,
         "rows": rows,
     }
 

@@ -132,7 +132,8 @@ class ComputationStore:
                     )
                 )
             ids = self._end(session, computation_id, None)
-        self.files.forget_partials(computation_id)
+            forgotten = self._forget_unwanted(session, row)
+        self.files.forget(computation_id) if forgotten else self.files.forget_partials(computation_id)
         self.changes.notify(*ids)
 
     def fail(self, computation_id: str, attempt: int, error: Mapping[str, Any]) -> None:
@@ -145,6 +146,9 @@ class ComputationStore:
             if not error.get("retryable"):
                 self.files.forget_partials(computation_id)
             ids = self._end(session, computation_id, dict(error))
+            forgotten = self._forget_unwanted(session, row)
+        if forgotten:
+            self.files.forget(computation_id)
         self.changes.notify(*ids)
 
     def stopped(self, computation_id: str, attempt: int) -> None:
@@ -160,9 +164,7 @@ class ComputationStore:
             row.state = ComputationState.WAITING if wanted else ComputationState.STOPPED
             row.attempt += wanted
             ids = [job.id for job in canceling]
-            forgotten = session.scalar(select(func.count()).where(Job.computation_id == computation_id)) == 0
-            if forgotten:  # its jobs were deleted while it stopped
-                session.delete(row)
+            forgotten = self._forget_unwanted(session, row)
         if forgotten:
             self.files.forget(computation_id)
         self.changes.notify(*ids)
@@ -308,6 +310,13 @@ class ComputationStore:
     def _jobs(self, session: Session, computation_id: str, states: Iterable[JobState]) -> list[Job]:
         query = select(Job).where(Job.computation_id == computation_id, Job.state.in_(list(states)))
         return list(session.scalars(query.order_by(Job.created_at, Job.id)))
+
+    def _forget_unwanted(self, session: Session, row: Computation) -> bool:
+        """Delete a computation whose jobs were deleted while it stopped: nothing else ever would."""
+        unwanted = session.scalar(select(func.count()).where(Job.computation_id == row.id)) == 0
+        if unwanted:
+            session.delete(row)
+        return unwanted
 
     def _end(self, session: Session, computation_id: str, error: dict[str, Any] | None) -> list[str]:
         """The jobs that waited succeed, or fail with an error; those being canceled are canceled."""

@@ -3,7 +3,7 @@
 import sqlite3
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from sqlalchemy.orm import Session
 from wsrender_server.jobs.faults import CommitUnknown, StoreUnavailable
 
 LOCK_WAIT_S = 5.0
+LONGEST_LOG = 1 << 23  # bytes of SQLite's write-ahead log; it writes back half of that by itself
+READERS_S = 0.5  # that those who read an earlier state are waited for
 
 
 def open_database(url: str, lock_wait_s: float = LOCK_WAIT_S) -> Engine:
@@ -99,6 +101,20 @@ class Transactions:
         finally:
             self.written += 1
 
+    def shorten_log(self) -> None:
+        """Write back, and empty, a write-ahead log of SQLite that has become long. Raises StoreUnavailable.
+
+        It goes on for as long as there is always somebody who reads, and nothing else makes its file shorter.
+        """
+        file = self.engine.url.database if self.engine.dialect.name == "sqlite" else None
+        if not file or _size(Path(f"{file}-wal")) <= LONGEST_LOG:
+            return
+        try:
+            with self._my_turn(), closing(sqlite3.connect(file, timeout=READERS_S)) as connection:
+                connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")  # later where somebody reads for long
+        except sqlite3.Error as error:
+            raise StoreUnavailable(f"the database does not answer ({error}); nothing was changed") from error
+
     @contextmanager
     def _my_turn(self) -> Iterator[None]:
         if self._turn is None:
@@ -110,6 +126,14 @@ class Transactions:
                 self._turn.release()
         else:
             raise StoreUnavailable("the database is busy; nothing was changed, try again")
+
+
+def _size(file: Path) -> int:
+    """Bytes of a file; 0 where there is none."""
+    try:
+        return file.stat().st_size
+    except FileNotFoundError:
+        return 0
 
 
 def _fault(error: DBAPIError, committing: bool = False) -> StoreUnavailable:

@@ -145,7 +145,7 @@ class Dispatcher:
         self._handle_inbox()
         now = time.monotonic()
         if now - self._ticked < TICK_S:  # messages come by the hundred, and each wakes this thread
-            if self._changed.is_set() and now - self._hurried >= TICK_S:
+            if self._changed.is_set() and now - self._hurried >= TICK_S and not self._waiting():
                 self._hurried = now
                 self._look(now, FEW_LAUNCHES)
             return
@@ -178,15 +178,18 @@ class Dispatcher:
 
     def _launch_some(self, most: int = MOST_LAUNCHES) -> None:
         """Hand out what waits, of much the first; owners take turns."""
-        here = {*self._targets, *self.engine.alive}
-        waiting = sum(not attempt.begun and attempt.target in here for attempt in self._attempts.values())
-        most = most if waiting < AHEAD else FEW_LAUNCHES
+        most = most if self._waiting() < AHEAD else FEW_LAUNCHES
         stopping = ComputationState.STOPPING
         ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
         if len(ready) > most:
             ready = self.store.in_turn(ready)[:most]
         for computation_id in ready:
             self._launch(computation_id)
+
+    def _waiting(self) -> int:
+        """How many attempts wait at the scheduler for workers that are there."""
+        here = {*self._targets, *self.engine.alive}
+        return sum(not attempt.begun and attempt.target in here for attempt in self._attempts.values())
 
     def _handle_inbox(self) -> None:
         """Handle what came in; where the database does not answer, keep the rest for later."""

@@ -71,11 +71,15 @@ class Retention:
             ]
 
     def sweep(self, now: datetime | None = None) -> list[Removal]:
-        """Remove what is to go; what is needed again by now stays. What was removed. Raises StoreUnavailable."""
+        """Remove what is to go; what is needed again by now stays. What was removed. Raises StoreUnavailable.
+
+        A database's log that has become long is emptied.
+        """
         done = [removal for removal in self.due(now) if self.remove(removal)]
         for removal in done:
             self.store.removed.update({removal.what: 1, "bytes": removal.bytes})
             log.info("removed", **vars(removal))
+        self.store.transactions.shorten_log()
         return done
 
     def remove(self, removal: Removal) -> bool:

@@ -1,13 +1,16 @@
 """Keys, scopes, owners, and what listens where."""
 
+import asyncio
 import base64
 import json
 import time
 
+import httpx2
 import pytest
 from fastapi.testclient import TestClient
 from wsrender_server.app import create_app
 from wsrender_server.auth import LOOK_AGAIN_S, check_binding, read_key_file
+from wsrender_server.jobs.faults import StoreUnavailable
 from wsrender_server.openapi import openapi_document
 
 from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
@@ -110,6 +113,30 @@ def test_without_keys_the_database_is_not_asked_for_one_each_time(client, jobs, 
     for _ in range(50):
         assert client.get("/v1/robots").status_code == 200
     assert len(asked) <= 1 + (time.monotonic() - started) / LOOK_AGAIN_S
+
+
+def test_without_keys_a_crowd_waits_for_one_look(client, jobs, monkeypatch):
+    """Each in a thread of its own kept submissions that came at once from being answered; a fault is everyone's."""
+    asked, faults = [], [StoreUnavailable("the database is locked")]
+
+    def has_key():
+        asked.append(1)
+        time.sleep(0.5)  # all come meanwhile
+        if faults:
+            raise faults.pop()
+        return False
+
+    monkeypatch.setattr(jobs.store, "has_key", has_key)
+
+    async def crowd():
+        transport = httpx2.ASGITransport(client.app)
+        async with httpx2.AsyncClient(transport=transport, base_url=HOST) as http:
+            return [each.status_code for each in await asyncio.gather(*(http.get("/v1/jobs") for _ in range(50)))]
+
+    for status in (503, 200):
+        time.sleep(LOOK_AGAIN_S)
+        asked.clear()
+        assert client.portal.call(crowd) == [status] * 50 and asked == [1]
 
 
 def test_an_administrator_manages_keys(keyed, keys):

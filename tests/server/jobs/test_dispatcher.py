@@ -178,6 +178,24 @@ def test_a_submission_waits_for_no_tick_and_a_flood_of_them_does(store, out, mon
     assert len(out.sent) == 4
 
 
+def test_a_submission_waits_for_its_tick_where_others_wait_for_workers(store, out, monkeypatch):
+    """Looks at a long table by the dozen kept the server from answering, and workers had enough to do."""
+    looks, unfinished, dispatcher = [], store.unfinished, out.dispatcher
+    monkeypatch.setattr(store, "unfinished", lambda: looks.append(1) or unfinished())
+    store.changes.listener, dispatcher._ticked = dispatcher._hear, time.monotonic() + 3600
+    dispatcher._targets = {"auto": "cpu:x", "cpu": "cpu:x"}
+    for number in range(3):
+        dispatcher._hurried = 0.0
+        store.submit("ann", document_of(number))
+        dispatcher._tick()
+        assert len(out.sent) == len(looks) == 1
+    (attempt,) = dispatcher._attempts.values()
+    dispatcher._reported({"token": attempt.token, "step": "plan"})
+    dispatcher._hurried = 0.0
+    dispatcher._tick()
+    assert len(out.sent) == len(looks) == 2, "a worker may have a place for it"
+
+
 def test_a_dispatcher_hears_of_submissions_and_not_of_its_own_changes(store, document, tmp_path, monkeypatch):
     monkeypatch.setattr(Dispatcher, "_loop", lambda self: None)
     dispatcher = Dispatcher(store, Settings(data_dir=tmp_path / "data"))

@@ -4,16 +4,20 @@ import os
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import pytest
-from sqlalchemy import event
+from sqlalchemy import event, func, select, text
 from sqlalchemy.exc import OperationalError
 from wsrender_server.jobs import clock
+from wsrender_server.jobs.database import LONGEST_LOG
 from wsrender_server.jobs.faults import InvalidTransition, QuotaExceeded, StoreUnavailable
 from wsrender_server.jobs.records import JobState
 from wsrender_server.jobs.retention import UPLOAD_S, Retention
 from wsrender_server.jobs.store import JobStore
+from wsrender_server.jobs.tables import Row
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.documents import canonical
@@ -299,3 +303,53 @@ def test_documents_whose_jobs_never_came_about_are_removed(store, retention):
         os.utime(store.files.document(name, "cc").parent, (time.time() - age,) * 2)
     assert removed(retention(), "files") == ["aa"]
     assert [path.name for path in (store.files.root / "documents").iterdir()] == ["bb"]
+
+
+def test_200_jobs_leave_no_more_rows_and_pages_than_50(store, retention):
+    """Of jobs that are gone nothing stays, and the pages of the database that they had are used again."""
+    swept = retention(keep_jobs_per_owner=5, keep_results_bytes=100)
+    taken = []
+    for number in range(200):
+        content = f"{number:032d}".encode()
+        _, computation = running(store, document_of(number), labels={"of": str(number)}, idempotency_key=f"k{number}")
+        complete(store, computation, content=content)
+        if number % 10 == 9:
+            swept.sweep(datetime.now(UTC) + timedelta(minutes=2))
+            taken.append(_taken(store))
+    rows, files, pages = zip(*taken, strict=True)
+    assert set(rows[1:]) == {rows[1]} and set(files[1:]) == {files[1]}
+    assert len(store.list("ann", limit=200)[0]) == 5
+    assert max(pages[5:]) <= max(pages[:5]) + 2
+
+
+def _taken(store):
+    """Rows by table, files of results, and pages of the database that a file of SQLite's has."""
+    with store.transactions.read() as session:
+        rows = tuple(session.scalar(select(func.count()).select_from(each)) for each in Row.metadata.sorted_tables)
+        of_sqlite = session.get_bind().dialect.name == "sqlite"
+        pages = session.scalar(text("PRAGMA page_count")) if of_sqlite else 0
+    return rows, sum(path.is_file() for path in (store.files.root / "results").rglob("*")), pages
+
+
+def test_the_log_of_the_database_does_not_grow_for_ever(store, retention, database):
+    """SQLite begins it anew when nobody reads; where there is always somebody, it goes on, and stays that long."""
+    if database.dialect.name != "sqlite":
+        pytest.skip("only SQLite has one")
+    log = Path(f"{database.url.database}-wal")
+    (job,) = results(store, 10)
+    with ExitStack() as reading:
+        for _ in range(12):
+            following = ExitStack()
+            following.enter_context(store.transactions.read()).execute(text("SELECT * FROM jobs")).all()
+            reading.close()
+            reading.push(following)
+            with store.transactions.write() as session:
+                session.execute(text("UPDATE jobs SET error = json_quote(hex(randomblob(500000)))"))
+        assert log.stat().st_size > LONGEST_LOG
+        retention().sweep()
+        assert log.stat().st_size > LONGEST_LOG, "somebody reads for long, and is not waited for for long"
+    with store.transactions.write() as session:
+        session.execute(text("UPDATE jobs SET error = NULL"))
+    assert log.stat().st_size > LONGEST_LOG
+    retention().sweep()
+    assert log.stat().st_size == 0 and states(store, "ann", job) == [KEPT]

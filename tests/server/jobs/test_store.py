@@ -301,13 +301,22 @@ def test_deleting_the_last_job_removes_the_result(store, document):
     assert not store.submit("ann", document).cached
 
 
-def test_a_computation_whose_jobs_are_deleted_while_it_stops_is_forgotten(store, document):
+@pytest.mark.parametrize("end", ["stopped", "completed", "failed"])
+def test_a_computation_whose_jobs_are_deleted_while_it_stops_is_forgotten(store, document, end):
+    """However it ends: its row would stay for ever."""
     job, computation = running(store, document, timeout_s=AT_ONCE)
     assert store.time_out() == [job]
     store.delete("ann", job)
     assert store.unfinished()[computation][0] == ComputationState.STOPPING
-    store.stopped(computation, store.computation(computation).attempt)
-    assert store.computation(computation) is None and not store.submit("ann", document).cached
+    attempt = store.computation(computation).attempt
+    if end == "stopped":
+        store.stopped(computation, attempt)
+    elif end == "completed":
+        assert not complete(store, computation).parent.exists()
+    else:
+        store.fail(computation, attempt, {"code": "kernel_crash", "message": "…", "retryable": True})
+    assert store.computation(computation) is None and store.usage()["results"] == 0
+    assert not store.submit("ann", document).cached
 
 
 def test_a_more_urgent_twin_makes_a_waiting_computation_go_out_anew(store, document):
