@@ -132,7 +132,12 @@ def analyze(
 @runs("indices_at")
 def indices_at(
     robot: RobotLike,
-    configurations: Sequence[Sequence[float] | np.ndarray] | np.ndarray | str | ArrayFile | Mapping[str, Any],
+    configurations: Sequence[Sequence[float] | np.ndarray]
+    | Sequence[float]
+    | np.ndarray
+    | str
+    | ArrayFile
+    | Mapping[str, Any],
     *,
     base: str | None = None,
     tip: str | None = None,
@@ -160,8 +165,8 @@ def indices_at(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``configurations``: Rows of joint values [rad or m], (N, n), one per joint from base to tip; or a .npy, Parquet or
-        CSV file of them, with columns in that order or named as the joints.
+    ``configurations``: Rows of joint values [rad or m], (N, n), one per joint from base to tip, or a single one, (n,);
+        or a .npy, Parquet or CSV file of them, with columns in that order or named as the joints.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fastapi import Depends, FastAPI
+from fastapi import Depends, FastAPI, Request
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
@@ -28,6 +28,7 @@ from wsrender_server.parts import Jobs, Parts
 from wsrender_server.problems import answer_errors
 from wsrender_server.query import known_parameters
 from wsrender_server.requests import RequestLayer
+from wsrender_server.routes.files import content_response
 from wsrender_server.settings import Settings
 
 STATIC = Path(__file__).parent / "static"
@@ -166,9 +167,10 @@ def _add_documentation(app: FastAPI) -> None:
     app.mount("/docs/files", StaticFiles(directory=STATIC / "swagger-ui"), name="swagger-ui")
 
     @app.get("/openapi.json", include_in_schema=False)
-    async def openapi() -> Response:
+    def openapi(request: Request) -> Response:
         servers = {"servers": [{"url": address("")}]} if address("") else {}
-        return JSONResponse(app.openapi() | servers)
+        content = JSONResponse(app.openapi() | servers).body
+        return content_response(request, bytes(content), "application/json")
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> Response:

@@ -11,6 +11,7 @@ FIELDS = {
     "reachability": {"points_m": POINT, "quats_wxyz": QUATERNION},
     "postures": {"position_m": POINT, "quat_wxyz": QUATERNION},
     "planar_boundary": {"points_m": [0.2, 0.1]},
+    "indices_at": {"configurations": [0.2, 0.1]},
     "workspace": {"indices": "manipulability"},
 }
 
@@ -68,6 +69,21 @@ def test_arrays_too():
 def test_what_is_neither_is_refused(value, message):
     with pytest.raises(ws.DocumentError, match=f"points_m: {message}"):
         parsed("reachability", points_m=value)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ([0.1, [0.1, 0.2]], "must be a number"),
+        ([[0.1, 0.2], 0.1], "must be a list"),
+        (["0.1", "0.2"], "must be a list"),
+        ([], "must have at least 1 items"),
+        ([[]], "must hold rows of one length"),
+    ],
+)
+def test_what_is_no_configuration_is_refused(value, message):
+    with pytest.raises(ws.DocumentError, match=f"configurations: {message}"):
+        parsed("indices_at", configurations=value)
 
 
 def test_a_name_that_is_none():

@@ -42,10 +42,10 @@ ROBOT = Parameter(
 )
 CONFIGURATIONS = Parameter(
     "configurations",
-    "Sequence[Sequence[float] | np.ndarray] | np.ndarray | str | ArrayFile | Mapping[str, Any]",
+    "Sequence[Sequence[float] | np.ndarray] | Sequence[float] | np.ndarray | str | ArrayFile | Mapping[str, Any]",
     None,
-    "Rows of joint values [rad or m], (N, n), one per joint from base to tip; or a .npy, Parquet or CSV file of them, "
-    "with columns in that order or named as the joints.",
+    "Rows of joint values [rad or m], (N, n), one per joint from base to tip, or a single one, (n,); or a .npy, "
+    "Parquet or CSV file of them, with columns in that order or named as the joints.",
 )
 ROBOTS = Parameter(
     "robots",

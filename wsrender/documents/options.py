@@ -16,6 +16,7 @@ from wsrender.documents.quantities import (
     PositiveNumber,
     distinct,
     integer,
+    listed_rows,
     number_rows,
     quoted,
     real,
@@ -114,7 +115,7 @@ def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | ArrayFile:
         value = {"path": fspath(value)}
     if isinstance(value, Mapping | ArrayFile):
         return ArrayFile.model_validate(value)
-    rows = number_rows(value)
+    rows = number_rows(listed_rows(value))
     if not rows:
         raise ValueError("must have at least 1 items")
     if len(lengths := set(map(len, rows))) > 1 or 0 in lengths:
@@ -160,11 +161,14 @@ StatisticsOrNone = Annotated[
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 Precision = Literal["float32", "float64"]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
+_ROW = Annotated[tuple[float, ...], Field(min_length=1)]
+_ROWS = Annotated[tuple[_ROW, ...], Field(min_length=1)]
 Configurations = Annotated[
-    Annotated[tuple[tuple[float, ...], ...], Field(min_length=1)] | ArrayFile,
+    _ROWS | ArrayFile,
     Field(union_mode="left_to_right"),
-    BeforeValidator(_configurations),
+    BeforeValidator(_configurations, json_schema_input_type=_ROWS | _ROW | ArrayFile),
 ]
+"""Rows of joint values, a single one as it is, or a file of them."""
 
 
 class IndexChoices(Document):

@@ -22,7 +22,7 @@ from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.query import Identifier
 from wsrender_server.routes.artifacts import BINARY, ETAG, PARTLY
-from wsrender_server.routes.files import file_response
+from wsrender_server.routes.files import content_response, file_response
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
@@ -119,11 +119,16 @@ class KeptModelView(ModelView):
     tags=["catalogue"],
     summary="List the analyses",
     response_model=Page[AnalysisView],
-    responses=problem_responses(401, 403),
+    responses={
+        **PARTLY,
+        200: {"description": "The analyses", "headers": ETAG},
+        **problem_responses(401, 403, 416),
+    },
 )
-def list_analyses(principal: Reader) -> Page[AnalysisView]:
+def list_analyses(principal: Reader, request: Request) -> Response:
     """Every analysis, with the JSON Schema of its documents; all in one page."""
-    return Page(items=[_analysis(name) for name in job_classes()])
+    page = Page[AnalysisView](items=[_analysis(name) for name in job_classes()])
+    return content_response(request, page.model_dump_json(by_alias=True).encode(), "application/json")
 
 
 @router.get(

@@ -1,5 +1,7 @@
 """Jobs: waiting through restarts, events, results and their files."""
 
+import hashlib
+
 import httpx2
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from wsrender.volume.table import Table
 
 LOST = httpx2.ReadError("connection reset by peer")
 REFUSED = httpx2.ConnectError("connection refused")
+VOLUME = "/v1/jobs/j1/artifacts/volume.vtkhdf"
 
 
 def record(state, **members):
@@ -63,6 +66,8 @@ def test_wait_survives_a_restart(server, client, clock):
     assert (job.state, job.finished) == ("succeeded", True)
     polls = [dict(request.url.params) for request in server.requests[1:]]
     assert all(float(poll["wait"]) > 0 for poll in polls)
+    for request, poll in zip(server.requests[1:], polls, strict=True):  # an answer that is held is no lost one
+        assert request.extensions["timeout"]["read"] == pytest.approx(float(poll["wait"]) + 30)
 
 
 @pytest.mark.parametrize("progress", [False, True])
@@ -180,6 +185,13 @@ def test_without_h5py_and_pyarrow_npz_is_asked(finished, client, local, tmp_path
     assert [request.url.params["format"] for request in finished.requests[2:]] == ["npz", "npz"]
 
 
+def test_what_was_converted_is_verified_by_its_tag(finished, client, tmp_path, monkeypatch):
+    monkeypatch.setattr("wsrender.results.export.formats.find_spec", lambda package: None)
+    finished.answer("GET", VOLUME, (200, {"ETag": f'"{hashlib.sha256(b"whole").hexdigest()}"'}, b"other"))
+    with pytest.raises(ws.ServerError, match="another SHA-256 than the server says, in 2 attempts"):
+        _ = client.job("j1").result().volume
+
+
 def test_downloads_go_on_where_they_were(finished, client, local):
     expected, folder = local
     name = "volume.vtkhdf"
@@ -189,6 +201,65 @@ def test_downloads_go_on_where_they_were(finished, client, local):
     ranges = [request.headers.get("Range") for request in finished.sent("GET", f"/v1/jobs/j1/artifacts/{name}")]
     assert ranges == [None, "bytes=700-", "bytes=700-", "bytes=1600-"]
     assert size > 1600
+
+
+def test_files_are_asked_for_with_the_key_and_as_they_are(finished, client):
+    """What a proxy would compress on its way has neither the size nor the SHA-256 of the file."""
+    assert client.job("j1").result().volume is not None
+    assert {request.headers["Authorization"] for request in finished.requests} == {"Bearer secret"}
+    assert {request.headers["User-Agent"] for request in finished.requests} == {f"wsrender/{ws.__version__}"}
+    (file,) = (request for request in finished.requests if "/artifacts/" in request.url.path)
+    assert file.headers["Accept-Encoding"] == "identity"
+
+
+def test_a_download_goes_on_for_as_long_as_something_comes(finished, client, local, clock):
+    """Patience is that for a server that is silent: each piece begins it anew."""
+    expected, folder = local
+    finished.answer("GET", VOLUME, serves(folder / "volume.vtkhdf", breaks=[20] * 40))
+    assert_same_volume(client.job("j1").result().volume, expected.volume)
+    assert clock.pauses == [0.1] * 40
+
+
+def test_a_download_waits_for_a_server_that_starts_again(finished, client, local, clock):
+    expected, folder = local
+    starting = refuses(503, "starting", retryable=True, headers={"Retry-After": "3"})
+    serving = serves(folder / "volume.vtkhdf", breaks=[700])
+    finished.answer("GET", VOLUME, serving, REFUSED, starting, (502, {}, b"<html>bad gateway</html>"), serving)
+    assert_same_volume(client.job("j1").result().volume, expected.volume)
+    assert clock.pauses == pytest.approx([0.1, 0.2, 3, 0.8])
+    assert finished.requests[-1].headers["Range"] == "bytes=700-"
+
+
+def test_a_download_that_lost_only_its_end_is_whole(finished, client, local):
+    """Nothing is left to ask for: the range begins where the file ends."""
+    expected, folder = local
+    content = (folder / "volume.vtkhdf").read_bytes()
+    etag = f'"{hashlib.sha256(content).hexdigest()}"'
+    nothing = refuses(416, "range_not_satisfiable", headers={"Content-Range": f"bytes */{len(content)}"})
+    finished.answer("GET", VOLUME, (200, {"ETag": etag}, Lost(content)), nothing)
+    assert_same_volume(client.job("j1").result().volume, expected.volume)
+    assert finished.requests[-1].headers["Range"] == f"bytes={len(content)}-"
+
+
+def test_names_of_files_may_be_odd(server, client, tmp_path):
+    """What stands for something in an address is written otherwise there."""
+    name, content = "maps/left #1? 100%.csv", b"x\n1\n"
+    record = {"name": name, "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+    server.answer("GET", "/v1/jobs/j1", says({"id": "j1", "state": "succeeded"}))
+    server.answer("GET", "/v1/jobs/j1/result", says({"artifacts": [record]}))
+    server.answer("GET", f"/v1/jobs/j1/artifacts/{name}", (200, {}, content))
+    client.job("j1").download(tmp_path / "out")
+    assert (tmp_path / "out" / name).read_bytes() == content
+    assert server.requests[-1].url.query == b""
+
+
+def test_progress_of_downloads_is_that_of_all_files(finished, client, local, tmp_path, monkeypatch):
+    told = []
+    shown = lambda _, total: lambda have: told.append((have, total))  # noqa: E731
+    monkeypatch.setattr("wsrender.client.job_facts.Watched.on_bytes", shown)
+    client.job("j1").download(tmp_path / "out", progress=True)
+    sizes = [artifact["bytes"] for artifact in local[0].document["artifacts"]]
+    assert told == [(sum(sizes[: k + 1]), sum(sizes)) for k in range(len(sizes))]
 
 
 def test_file_that_changed_during_a_download_starts_anew(finished, client, local, tmp_path):

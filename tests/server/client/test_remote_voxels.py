@@ -76,6 +76,8 @@ def test_all_of_it_is_that_of_a_local_result(remote, server, local):
         assert list(found.variables) == list(expected.variables)
         xarray.testing.assert_identical(found.load(), expected)
     assert downloaded(server) <= (local[1] / "volume.vtkhdf").stat().st_size + BLOCK_BYTES
+    asked = [request.headers for request in server.sent("GET", FILE)]
+    assert {(each["Authorization"], each["Accept-Encoding"]) for each in asked} == {("Bearer secret", "identity")}
 
 
 def test_a_plane_costs_its_layers(remote, server, local):

@@ -304,6 +304,7 @@ def test_volumes_in_every_format_have_the_axes_that_the_description_says(client,
     assert client.get(f"{path}/volume").content == client.get(f"{path}/artifacts/volume.vtkhdf").content
     other = client.get(f"{path}/volume", params={"volume": "left arm", "format": "npz"})
     np.testing.assert_array_equal(npz(other.content), found.volumes["left arm"].count)
+    assert other.headers["content-disposition"] == "attachment; filename*=utf-8''left%20arm.npz"  # RFC 6266
 
 
 def test_formats_that_volumes_do_not_have(client, kept):
@@ -353,6 +354,8 @@ def test_a_download_that_broke_off_goes_on(client, finished, rest):
     assert (changed.status_code, changed.content) == (200, whole.content)
     known = client.get(f"{finished}/{rest}", headers={"If-None-Match": etag})
     assert (known.status_code, known.content, known.headers["etag"]) == (304, b"", etag)
+    for name in ("cache-control", "vary"):  # RFC 9110, 15.4.5
+        assert known.headers.get(name) == whole.headers.get(name)
 
 
 def test_models_go_on_too(client):

@@ -68,6 +68,8 @@ def test_the_published_schema_is_that_of_the_documents():
     bodies += [{"analysis": "reachability", "robot": "scara", "points_m": each} for each in points]
     bodies += [DOCUMENT | {"task": task} for task in (["x", "rz"], ["x", "x"], [], "full")]
     bodies += [each["value"] for each in submission_examples().values()]
+    rows = ([0, 1], [[0, 1]], [], [[]], [0, [1]], {"model": "0" * 64}, {}, 1)
+    bodies += [{"analysis": "indices_at", "robot": "scara", "configurations": each} for each in rows]
     numbers = (1, 0, [1, 2], [1, 2, 3], [1, 2, -3], "1", None)
     bodies += [{"analysis": "five_bar", "base_m": 1, "proximal_m": 1, "distal_m": each} for each in numbers]
     links = {"base_m": 1, "proximal_m": 1, "distal_m": 1}

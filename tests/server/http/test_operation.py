@@ -2,6 +2,7 @@
 
 import codecs
 import errno
+import hashlib
 import io
 import re
 import sqlite3
@@ -188,6 +189,22 @@ def test_analyses_carry_their_schema(client):
         assert item["schema"] == job_schema(name) and item["description"]
         assert client.get(f"/v1/analyses/{name}").json() == item
     problem_of(client.get("/v1/analyses/nothing"), 404)
+
+
+@pytest.mark.parametrize("path", ["/openapi.json", "/v1/analyses"])
+def test_long_descriptions_go_on_and_are_not_sent_to_who_has_them(client, path):
+    whole = client.get(path)
+    etag, size = whole.headers["etag"], len(whole.content)
+    assert etag == f'"{hashlib.sha256(whole.content).hexdigest()}"' and size > 500_000
+    assert whole.headers["content-type"] == "application/json" and whole.headers["accept-ranges"] == "bytes"
+    known = client.get(path, headers={"If-None-Match": etag})
+    assert (known.status_code, known.content, known.headers["etag"]) == (304, b"", etag)
+    part = client.get(path, headers={"Range": f"bytes={size // 2}-", "If-Range": etag})
+    assert (part.status_code, part.content) == (206, whole.content[size // 2 :])
+    changed = client.get(path, headers={"Range": "bytes=5-", "If-Range": '"of another"'})
+    assert (changed.status_code, changed.content) == (200, whole.content)
+    (fault,) = problem_of(client.get(path, headers={"Range": f"bytes={size}-"}), 416)["errors"]
+    assert fault["pointer"] == "Range"
 
 
 def test_robots_are_those_of_the_library(client):

@@ -262,7 +262,10 @@ def test_slices_of_what_is_not_there(client, finished):
         problem_of(client.get(path, params=query), 404, "invalid_input")
     for query in ({"axis": "w"}, {"at": "here"}, {"at": "nan"}, {"at": "inf"}):
         problem_of(client.get(path, params=query), 422, "invalid_request")
-    problem_of(client.get(path, headers={"Accept": "text/html"}), 406, "not_acceptable")
+    for accept in ("text/html", "*/*;q=0", "text/html, */*;q=0.0", "image/*;q=0"):
+        problem_of(client.get(path, headers={"Accept": accept}), 406, "not_acceptable")
+    for accept, media_type in (("text/*, */*;q=0.1", "text/csv"), ("image/png;q=0.2, */*;q=0.3", "application/x-npy")):
+        assert client.get(path, headers={"Accept": accept}).headers["content-type"].startswith(media_type)
 
 
 def test_pictures(client, finished):

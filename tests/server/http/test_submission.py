@@ -56,6 +56,14 @@ def test_a_key_at_work_is_refused(client):
     assert problem["retryable"]
 
 
+def test_a_key_is_free_again_when_its_request_was_refused(client, submit):
+    paths = [f"/v1/jobs/{submit(voxel_size_m=0.1 + seed)['id']}" for seed in range(5)]
+    key = {"Idempotency-Key": "abc-1"}
+    problem_of(client.post("/v1/jobs", json=DOCUMENT, headers=key), 429, "queue_full")
+    client.post(f"{paths[0]}:cancel")
+    assert client.post("/v1/jobs", json=DOCUMENT, headers=key).status_code == 202
+
+
 def test_an_odd_key_is_refused(client):
     problem_of(client.post("/v1/jobs", json=DOCUMENT, headers={"Idempotency-Key": "x" * 256}), 422, "invalid_request")
 

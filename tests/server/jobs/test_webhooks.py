@@ -172,6 +172,22 @@ def test_a_name_is_looked_up_once_and_the_connection_goes_there(resolved):
     assert {headers["host"] for headers, _ in here.got} == {f"rebound.example.org:{port}"}
 
 
+def test_the_next_address_of_a_name_is_asked_where_one_does_not_answer(resolved):
+    """Each at most once: a message that may have arrived is not sent to another."""
+    with receiver() as here:
+        port = int(here.url.rpartition(":")[2])
+        settings, one = allowing(f"http://hooks.example.org:{port}"), message(f"http://hooks.example.org:{port}/")
+        settings = settings.model_copy(update={"webhook_networks": (ip_network("127.0.0.0/8"),)})
+        resolved["hooks.example.org"] = [["127.0.0.2", "127.0.0.1"]]
+        assert sent(settings, one).delivered and len(here.got) == 1
+        resolved["hooks.example.org"] = [["127.0.0.2", "127.0.0.3"]]
+        outcome = sent(settings, one)
+        assert not outcome.delivered and "no answer" in outcome.said
+    with receiver(lambda: 500, port=port) as first, receiver(address="127.0.0.2", port=port) as second:
+        resolved["hooks.example.org"] = [["127.0.0.1", "127.0.0.2"]]
+        assert not sent(settings, one).delivered and len(first.got) == 1 and not second.got
+
+
 def test_redirects_are_not_followed_and_410_is_the_end():
     for status in (301, 302, 303, 307, 308, 400, 404, 410, 429, 500, 503):
         with receiver(lambda status=status: status) as here:
@@ -444,6 +460,36 @@ def test_deliveries_go_on_after_failures_and_a_restart(store, document):
     assert len({headers["webhook-id"] for headers, _ in here.got}) == 1 and len(here.got) == 3
     assert all(Verifier(secret).verify(body, headers)["type"] == "job.queued" for headers, body in here.got)
     assert len({body for _, body in here.got}) == 1
+
+
+def test_what_is_delivered_while_the_server_stops_is_recorded(store, monkeypatch):
+    """It does not come again."""
+    monkeypatch.setattr("wsrender_server.jobs.webhooks.deliveries.LAST_S", 20.0)  # machines are shared
+    going, done = threading.Event(), threading.Event()
+
+    def slowly():
+        going.set()
+        assert done.wait(30)
+        return 204
+
+    with receiver(slowly) as here:
+        webhook, _ = store.create_webhook("ann", here.url, ["queued"])
+        store.test_webhook("ann", webhook.id)
+        with Deliveries(store, allowing(here.url)).running():
+            assert going.wait(30)
+            threading.Timer(0.2, done.set).start()
+        record = store.webhook("ann", webhook.id)
+        assert (record.delivered, record.waiting, len(here.got)) == (1, 0, 1)
+
+
+def test_what_nobody_is_to_get_goes_while_deliveries_run(store, monkeypatch):
+    monkeypatch.setattr(webhook_store, "MOST_WAITING", 3)
+    with receiver(lambda: 500) as here:
+        webhook, _ = store.create_webhook("ann", here.url, ["queued"])
+        for _ in range(9):
+            store.test_webhook("ann", webhook.id)
+        with Deliveries(store, allowing(here.url)).running():
+            wait_until(lambda: store.webhook("ann", webhook.id).given_up == 6)
 
 
 def test_a_fault_of_the_store_ends_nothing(store, document, monkeypatch):

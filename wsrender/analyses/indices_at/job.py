@@ -40,8 +40,8 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     analysis: Literal["indices_at"] = "indices_at"
     """Name of the analysis."""
     configurations: Configurations
-    """Rows of joint values [rad or m], one per joint from base to tip; or a file of them, {"path": "rows.npy"}, with
-    columns in that order or named as the joints."""
+    """Rows of joint values [rad or m], one per joint from base to tip, or a single one; or a file of them,
+    {"path": "rows.npy"}, with columns in that order or named as the joints."""
     polytopes: Polytopes = ()
     """Polytopes of the tip at each of at most 20 configurations, as meshes: "velocity", "force", "acceleration"; in the
     linear rows of the task, and in float64."""
