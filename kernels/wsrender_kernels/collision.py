@@ -44,7 +44,7 @@ _ARRAYS = {
                  "crowd_numbers", "crowd_balls", "crowd_boxes"),
     wp.int32: ("sources", "capsule_frame", "capsule_axis", "pairs", "planes", "tests", "tables", "table_columns",
                "solid_frame", "vertex_range", "solid_pairs", "pair_kinds", "pair_ranks", "lookups", "grid_shapes",
-               "node_links", "crowd_shape", "crowd_rows", "crowd_pairs"),
+               "node_links", "crowd_shape", "crowd_first", "crowd_rows", "crowd_ball_rows", "crowd_pairs"),
     wp.uint32: ("table_words", "first_reason", "grid_words", "crowd_words", "crowd_sets"),
 }  # fmt: skip
 ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}

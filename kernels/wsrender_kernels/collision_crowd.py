@@ -11,23 +11,24 @@ WITHIN = 36  # tests of a pair by what lies within its solids, at most
 
 CROWD = """
     alignas(64) unsigned looked_up_[@CROWD_BALLS * LN], near_[LN];
-    alignas(64) int cell_[LN];
+    alignas(64) int cell_[LN], nearest_[LN];
     unsigned* __restrict looked_up = looked_up_; unsigned* __restrict near = near_;
-    int* __restrict cell = cell_;
+    int* __restrict cell = cell_; int* __restrict nearest = nearest_;
     {
         const float* g = program.crowd_numbers.data; const int* n = program.crowd_shape.data;
         const unsigned* __restrict words = program.crowd_words.data;
         const float o0 = g[0], o1 = g[1], o2 = g[2], per = 1.f / g[3];
         const float e0 = (float)(n[0] - 1), e1 = (float)(n[1] - 1), e2 = (float)(n[2] - 1);
         const int s0 = n[1] * n[2], s1 = n[2];
-        for (int l = 0; l < LN; l++) near[l] = 0u;
+        for (int l = 0; l < LN; l++) { near[l] = 0u; nearest[l] = 0x7fffffff; }
         for (int r = 0; r < program.n_crowd_rows; r++) {
             const int* row = program.crowd_rows.data + 3 * r;
             const float* __restrict S = F + 12 * row[0] * LN;
             const unsigned bit = 1u << (r & 31);
             for (int i = row[1]; i < row[1] + row[2]; i++) {
                 const float* b = program.crowd_balls.data + 4 * i;
-                const float c0 = b[0], c1 = b[1], c2 = b[2], free = b[3];
+                const float c0 = b[0], c1 = b[1], c2 = b[2];
+                const int free = (int)b[3];
                 unsigned* __restrict D = looked_up + i * LN;
                 LANE_LOOP {
                     float x = S[9 * LN + l] + S[l] * c0 + S[3 * LN + l] * c1 + S[6 * LN + l] * c2;
@@ -40,7 +41,11 @@ CROWD = """
                     cell[l] = (int)x * s0 + (int)y * s1 + (int)z;
                 }
                 LANE_LOOP D[l] = words[cell[l]];
-                LANE_LOOP near[l] |= (float)((int)(D[l] << 16) >> 16) <= free ? bit : 0u;
+                LANE_LOOP {
+                    int over = ((int)(D[l] << 16) >> 16) - free, ball = over * 65536 + (i & 65535);
+                    near[l] |= over <= 0 ? bit : 0u;
+                    nearest[l] = ball < nearest[l] ? ball : nearest[l];
+                }
             }
         }
     }
@@ -107,6 +112,21 @@ CROWD = """
         }
     };
     const int set_words = program.crowd_set_words;
+    auto ask = [&](int l, int owner) {
+        const int* own = program.crowd_pairs.data + 5 * owner;
+        if (own[0] < 0 || (hit_[l] | hit_[(int)program.pair_numbers.data[2 * own[0] + 1] * LN + l])) return;
+        for (int k = 0; k < own[2]; k++) {
+            asked_[asked++] = {l, owner, own[1] + k};
+            while (asked >= @SIDE_BY_SIDE) decide();
+        }
+    };
+    // One of those at the nearest ball first: where it touches, as most do that touch any, no other is asked.
+    for (int l = 0; l < LN; l++) {
+        if (hit_[l] || !near[l]) continue;
+        const int i = nearest[l] & 65535, set = (int)(looked_up[i * LN + l] >> 16);
+        ask(l, 32 * program.crowd_ball_rows.data[i] * set_words + program.crowd_first.data[set]);
+    }
+    while (asked) decide();
     for (int l = 0; l < LN; l++) {
         for (unsigned rows = hit_[l] ? 0u : near[l]; rows; rows &= rows - 1u)
         for (int r = __builtin_ctz(rows); r < program.n_crowd_rows; r += 32) {
@@ -120,17 +140,7 @@ CROWD = """
             for (int w = 0; w < set_words; w++) {
                 unsigned named = 0u;
                 for (int k = 0; k < count; k++) named |= program.crowd_sets.data[sets[k] + w];
-                for (; named; named &= named - 1u) {
-                    const int owner = 32 * (r * set_words + w) + __builtin_ctz(named);
-                    const int* own = program.crowd_pairs.data + 5 * owner;
-                    const int pair = own[0];
-                    if (pair < 0) continue;
-                    if (hit_[l] | hit_[(int)program.pair_numbers.data[2 * pair + 1] * LN + l]) continue;
-                    for (int k = 0; k < own[2]; k++) {
-                        asked_[asked++] = {l, owner, own[1] + k};
-                        while (asked >= @SIDE_BY_SIDE) decide();
-                    }
-                }
+                for (; named; named &= named - 1u) ask(l, 32 * (r * set_words + w) + __builtin_ctz(named));
             }
         }
     }

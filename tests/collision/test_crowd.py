@@ -110,6 +110,18 @@ def test_distances_of_segments_from_boxes():
     assert (found == 0).sum() > 50
 
 
+def test_what_is_asked_first_is_near():
+    """Of each set one that it has, of each ball its own row."""
+    robot = ws.load_robot("ur5e")
+    (constraint,) = constraints_for(robot, None, many(robot, 40, 6, kinds=("box", "sphere")))
+    program = stored_program(constraint.own, constraint.chain, constraint.distances)
+    sets, first = program.crowd_sets[1:], program.crowd_first[1:]  # the first set is empty
+    words = sets[np.arange(len(sets)), first // 32]
+    assert (words >> (first % 32).astype(np.uint32) & 1).all() and len(set(first)) > 20
+    for row, (_, at, count) in enumerate(program.crowd_rows):
+        assert (program.crowd_ball_rows[at : at + count] == row).all()
+
+
 def test_the_kernel_holds_all_tests_of_a_pair():
     assert max(inner for _, inner in LEVELS) ** 2 == WITHIN
 

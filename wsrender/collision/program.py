@@ -55,11 +55,11 @@ class Program:
     frame, of the rows of ``triangles`` (F, 9); a surface's ``vertex_range`` is first of its nodes, first and end;
     ``solid_capsules`` (S, 7): middle and half axis in its joint and radius of a capsule around a solid that may meet
     one. Of a `Crowd`: ``crowd_numbers`` (4,): origin and cell; ``crowd_shape`` (3,); ``crowd_words``; ``crowd_sets``
-    (K, W); ``crowd_rows`` (M, 3) of those that move: joint from 1, first ball, balls;
-    ``crowd_balls`` (B, 4); ``crowd_boxes`` (E, 16): axes, middle and half sizes of boxes, which a radius makes wide;
-    ``crowd_pairs`` (M * 32 W, 5) of each with each that stands: pair or -1, first test and number outside, the same
-    inside, none where those outside say both; its ``tests`` are of a box and a capsule. With it the first ``alone`` of
-    ``pairs`` and ``moving`` capsules are enough.
+    (K, W), ``crowd_first`` (K,) the first bit of each; ``crowd_rows`` (M, 3) of those that move: joint from 1, first
+    ball, balls; ``crowd_balls`` (B, 4), ``crowd_ball_rows`` (B,) the row of each; ``crowd_boxes`` (E, 16): axes, middle
+    and half sizes of boxes, which a radius makes wide; ``crowd_pairs`` (M * 32 W, 5) of each with each that stands:
+    pair or -1, first test and number outside, the same inside, none where those outside say both; its ``tests`` are of
+    a box and a capsule. With it the first ``alone`` of ``pairs`` and ``moving`` capsules are enough.
     ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table along its first coordinate; ``never``,
     ``always``: pairs by proof.
     """
@@ -101,8 +101,10 @@ class Program:
     crowd_shape: np.ndarray
     crowd_words: np.ndarray
     crowd_sets: np.ndarray
+    crowd_first: np.ndarray
     crowd_rows: np.ndarray
     crowd_balls: np.ndarray
+    crowd_ball_rows: np.ndarray
     crowd_boxes: np.ndarray
     crowd_pairs: np.ndarray
     epsilon: float
@@ -534,6 +536,7 @@ def _crowd(
         no_rows = {f"crowd_{name}": _i([], width) for name, width in (("shape", 3), ("rows", 3), ("pairs", 5))}
         no_balls = {"crowd_balls": _f([], 4), "crowd_boxes": _f([], 16)}
         no_words = {f"crowd_{name}": np.zeros((0, 1), np.uint32) for name in ("words", "sets")}
+        no_words |= {f"crowd_{name}": np.zeros(0, np.int32) for name in ("first", "ball_rows")}
         return {**no_rows, **no_words, "crowd_numbers": _f([], 4), **no_balls}
     bits = {solid: bit for bit, solid in enumerate(many.solids)}
     of_pairs = np.full((len(many.balls), 32 * many.sets.shape[1], 5), -1, np.int32)
@@ -555,11 +558,18 @@ def _crowd(
         "crowd_shape": np.array(many.grid.words.shape, np.int32),
         "crowd_words": many.grid.words.ravel(),
         "crowd_sets": many.sets,
+        "crowd_first": _bits(many.sets).argmax(axis=1).astype(np.int32),
         "crowd_rows": _i(np.column_stack([frames, firsts, counts]), 3),
         "crowd_balls": _f(np.concatenate(list(many.balls.values())), 4),
+        "crowd_ball_rows": np.repeat(np.arange(len(counts)), counts).astype(np.int32),
         "crowd_boxes": _f(boxes.rows, 16),
         "crowd_pairs": of_pairs.reshape(-1, 5),
     }
+
+
+def _bits(sets: np.ndarray) -> np.ndarray:
+    """Bits (K, 32 W) of sets (K, W)."""
+    return np.unpackbits(sets.view(np.uint8), axis=1, bitorder="little")
 
 
 def _plane_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:
