@@ -15,6 +15,7 @@ import wsrender as ws
 from tests.collision.robots import drawn, random_text
 from wsrender.collision import certificates as certified
 from wsrender.collision import grids, levers, store
+from wsrender.collision import program as programs
 from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
 from wsrender.collision.covers import LEVELS, _segment_distances, covers, from_segment
 from wsrender.collision.distance import Distances, frames_of
@@ -306,6 +307,27 @@ def test_levers_are_no_shorter_than_what_random_configurations_have(seed):
             assert lever >= found - 1e-9
             tight.append(lever / found)
     assert min(tight) < 1.02
+
+
+def test_rates_of_a_pair_are_its_own_beside_others():
+    (constraint,) = constraints_for(ws.load_robot("so100"), Constraints(self_collision=True))
+    together = levers.Levers(constraint.chain)
+    for a, b in constraint.own.pairs:
+        ends = constraint.solids[a], constraint.solids[b]
+        assert together.rates(*ends) == levers.Levers(constraint.chain).rates(*ends)
+
+
+def test_levels_are_chosen_as_of_all_configurations(monkeypatch):
+    (constraint,) = constraints_for(ws.load_robot("so100"), Constraints(self_collision=True))
+    made = dict(enumerate(covers(constraint.solids)))
+    chosen = programs._Chosen(constraint.own, constraint.chain, made)
+    numbers = range(len(constraint.pairs))
+    found = [chosen.levels(k) for k in numbers]
+    near = [chosen._near(*pair, 0.0).mean() for pair in constraint.own.pairs]
+    monkeypatch.setattr(programs._Chosen, "_near", lambda *_: np.ones(programs.DRAWN, bool))
+    assert found == [chosen.levels(k) for k in numbers]
+    assert 0 < np.mean(near) < 0.9
+    assert len(set(found)) > 3
 
 
 @pytest.mark.parametrize("stretched", [(1, 1, 1), (8, 1, 0.2)])

@@ -6,13 +6,14 @@ middle of a box of configurations decides all of it where it exceeds what the bo
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
 from wsrender.collision.asked import counted
 from wsrender.collision.distance import Distances
 from wsrender.collision.grids import Lookup
-from wsrender.collision.levers import rates
+from wsrender.collision.levers import Levers
 from wsrender.collision.solids import Pairs
 from wsrender.robots.chain import Chain
 
@@ -53,8 +54,9 @@ def certificates(
     ``lookups``: of every pair with a surface, whose distances would take too long.
     """
     never, always, tables, left = [], [], [], []
+    levers = Levers(chain)
     for number in counted(range(len(pairs.pairs))):
-        pair = _Pair(pairs, number, chain, distances, (lookups or {}).get(number))
+        pair = _Pair(pairs, number, levers, distances, (lookups or {}).get(number))
         # Neighbours are so near that their covers always touch; what stands around is hardly ever.
         most = 0 if pair.round or pair.lookup else 1 if pairs.around[pairs.reason[number]] else 2
         tabled = len(pair.coordinates) <= most
@@ -78,14 +80,15 @@ def certificates(
 class _Pair:
     """A pair's distance as a function of the coordinates between its solids."""
 
-    def __init__(self, pairs: Pairs, number: int, chain: Chain, distances: Distances, lookup: Lookup | None):
+    def __init__(self, pairs: Pairs, number: int, levers: Levers, distances: Distances, lookup: Lookup | None):
         self.a, self.b = (int(k) for k in pairs.pairs[number])
         self.solids, self.margin = pairs.solids, pairs.margin(number)
-        self.chain, self.distances, self.lookup = chain, distances, lookup
-        own = rates(chain, self.solids[self.a], self.solids[self.b])
+        self.chain, self.distances, self.lookup = levers.chain, distances, lookup
+        own = levers.rates(self.solids[self.a], self.solids[self.b])
         self.coordinates = tuple(own)
         self.rate = np.array(list(own.values()))
-        self.low, self.high = (limit[list(own)] for limit in (chain.lower_limits, chain.upper_limits))
+        limits = self.chain.lower_limits, self.chain.upper_limits
+        self.low, self.high = (limit[list(own)] for limit in limits)
 
     @property
     def round(self) -> bool:
@@ -107,9 +110,8 @@ class _Pair:
         q[:, list(self.coordinates)] = values
         # In the frame that carries the first solid, which no joint before it moves; surfaces stand in the base's.
         a, b = self.solids[self.a], self.solids[self.b]
-        T = np.tile(np.eye(4), (len(q), 1, 1))
-        for joint in range(a.joint + 1, b.joint + 1):
-            T = T @ self.chain.step(joint, q)
+        steps = [self.chain.step(joint, q) for joint in range(a.joint + 1, b.joint + 1)]
+        T = reduce(np.matmul, steps) if steps else np.tile(np.eye(4), (len(q), 1, 1))
         if self.lookup:
             return self.lookup.distance(T)
         T_a = np.broadcast_to(a.T, T.shape)

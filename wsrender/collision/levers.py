@@ -8,23 +8,36 @@ from wsrender.robots.chain import Chain
 STEPS = 360  # of a joint's range at which a lever is measured; what lies between is bounded
 
 
-def rates(chain: Chain, a: Solid, b: Solid) -> dict[int, float]:
-    """Upper bound of how much the signed distance of two solids changes by a unit of every coordinate between them.
+class Levers:
+    """Levers of solids in a chain; those that pairs of the same joints have in common are measured once."""
 
-    ``a`` is carried by the lower joint. By coordinate [m/rad, or 1 of a slide]: a rigid motion that moves no point of
-    one solid by more than d changes the signed distance by no more than d, for its support function changes by no more.
-    """
-    between = range(a.joint + 1, b.joint + 1)
-    found: dict[int, float] = {}
-    for joint in between:
-        lever = (
-            min(_lever(chain, joint, a, between), _lever(chain, joint, b, between))
-            if chain.joint_is_revolute[joint]
-            else 1.0
-        )
-        source = int(chain.joint_source[joint])
-        found[source] = found.get(source, 0.0) + abs(float(chain.joint_scale[joint])) * lever
-    return found
+    def __init__(self, chain: Chain):
+        self.chain = chain
+        self._known: dict[tuple[int, int, range], float] = {}
+        self._solids: list[Solid] = []  # kept, for their ids stand for them
+
+    def rates(self, a: Solid, b: Solid) -> dict[int, float]:
+        """Upper bound of how much the signed distance of two solids changes by a unit of every coordinate between them.
+
+        ``a`` is carried by the lower joint. By coordinate [m/rad, or 1 of a slide]: a rigid motion that moves no point
+        of one solid by more than d changes the signed distance by no more than d, for its support function changes by
+        no more.
+        """
+        between = range(a.joint + 1, b.joint + 1)
+        found: dict[int, float] = {}
+        for joint in between:
+            turns = self.chain.joint_is_revolute[joint]
+            lever = min(self._of(joint, a, between), self._of(joint, b, between)) if turns else 1.0
+            source = int(self.chain.joint_source[joint])
+            found[source] = found.get(source, 0.0) + abs(float(self.chain.joint_scale[joint])) * lever
+        return found
+
+    def _of(self, joint: int, solid: Solid, between: range) -> float:
+        key = joint, id(solid), between
+        if key not in self._known:
+            self._known[key] = _lever(self.chain, joint, solid, between)
+            self._solids.append(solid)
+        return self._known[key]
 
 
 def _lever(chain: Chain, joint: int, solid: Solid, between: range) -> float:

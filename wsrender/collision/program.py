@@ -225,23 +225,39 @@ class _Chosen:
         tests, close = self._below(a, b, "outer", 0, margin, None, itself)
         if (not alone and OPEN_COST * close.mean() <= tests) or not close.any():
             return 0, None
-        near_at = np.flatnonzero(close) if alone else None
-        share = close.mean() if alone else 1.0
+        # What is not looked at is beyond all capsules; alone, what the first tests leave is all that there is.
+        at = np.flatnonzero(close if alone else self._near(a, b, margin))
+        count, share = (len(at), close.mean()) if alone else (DRAWN, 1.0)
         first, open_cost = alone * share or 1.0, OPEN_COST * share
         near, hit = (
-            [self._below(a, b, side, level, margin, near_at, itself) for level in range(len(LEVELS))]
+            [self._below(a, b, side, level, margin, at, itself) for level in range(len(LEVELS))]
             for side in ("outer", "inner")
         )
         choices = []
         for outer, (tests, close) in enumerate(near):
-            second = first * close.mean() if alone else 1.0
-            choices.append((first * tests + open_cost * close.mean(), outer, None))
+            second = first * close.sum() / count if alone else 1.0
+            choices.append((first * tests + open_cost * close.sum() / count, outer, None))
             choices += [
-                (first * tests + second * more + open_cost * (close & ~touching).mean(), outer, inner)
+                (first * tests + second * more + open_cost * (close & ~touching).sum() / count, outer, inner)
                 for inner, (more, touching) in enumerate(hit)
             ]
         _, outer, inner = min(choices, key=lambda each: each[0])
         return outer, inner
+
+    def _near(self, a: int, b: int, margin: float) -> np.ndarray:
+        """At which (N,) configurations balls around all capsules of two solids are near; of half-spaces at all."""
+        if self.pairs.solids[a].kind == "half_space":
+            return np.ones(DRAWN, bool)
+        (middle_a, radius_a), (middle_b, radius_b) = self._ball(a), self._ball(b)
+        between = middle_a - middle_b
+        return _dot(between, between) < (radius_a + radius_b + margin) ** 2
+
+    def _ball(self, solid: int) -> tuple[np.ndarray, float]:
+        """Middles (3, N) and radius of a ball around a solid's capsules of all levels."""
+        levels = [self._capsules(solid, "outer", level) for level in range(len(self.covers[solid].outer))]
+        center = levels[0][0][0]
+        placed = [each for level in levels for each in zip(*level, strict=True)]
+        return center, max(_length(middle - center) + _length(half) + radius for middle, half, radius in placed)
 
     def _below(
         self, a: int, b: int, side: str, level: int, margin: float, at: np.ndarray | None, itself: bool
