@@ -13,6 +13,7 @@ from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_the_command_line
 from wsrender.analyses.inverse_reachability.pictures import base_positions
 from wsrender.documents.placements import COORDINATES, placed
+from wsrender.reach.placements import PlacedAdmission
 from wsrender.run import execute, plan
 from wsrender.volume.table import CellGrid, Table
 
@@ -159,3 +160,14 @@ def test_a_point_and_an_axis_ask_for_less():
 def test_bad_jobs_are_refused_by_name(change, field, message):
     with pytest.raises((ws.DocumentError, ws.InputError), match=f"{field}.*{message}"):
         plan({**JOB, "over": TILTED} | change)
+
+
+def test_samples_that_searches_start_from_are_drawn_once(monkeypatch):
+    """For the labels, and for the best base's configuration."""
+    drawn, samples = [], PlacedAdmission.samples
+    monkeypatch.setattr(PlacedAdmission, "samples", lambda *asked: drawn.append(1) or samples(*asked))
+    target, over = {"position_m": [0.1, 0, 0.3], "quat_wxyz": [0, 1, 0, 0]}, {"x_m": [-0.6, 0.6, 0.3], "yaw_deg": 20}
+    constraints = {"self_collision": True}
+    found = ws.inverse_reachability("franka_panda", target=target, over=over, constraints=constraints, device="cpu")
+    assert found.document["bases"]["labels"]["reachable"]
+    assert len(drawn) == 1

@@ -157,7 +157,7 @@ class PlacementMap:
         if not self.served.any():
             return None
         best = (self._order == self._order.max()).reshape(self._sizes or [1])
-        frames, wraps = framed(self.over), [_whole_turn(self.over, name) for name in self.over.ranges]
+        frames, wraps = framed(self.over), [whole_turn(self.over, name) for name in self.over.ranges]
         for axis, wrap in enumerate(wraps):
             first = best.take([0], axis)
             if wrap and (best == first).all():  # what is alike all around is as deep in every direction
@@ -178,7 +178,7 @@ class PlacementMap:
         order = self._order.reshape(self._sizes or [1])
         highest = order
         for axis, name in enumerate(self.over.ranges):
-            mode = "wrap" if _whole_turn(self.over, name) else "nearest"
+            mode = "wrap" if whole_turn(self.over, name) else "nearest"
             highest = maximum_filter1d(highest, 3, axis, mode=mode)
         peaks = np.flatnonzero(order == highest)
         most = peaks[order.ravel()[peaks] == order.max()]
@@ -211,7 +211,7 @@ def framed(over: PlacementSpace) -> list[tuple[int, int, int]]:
     Beside those of a whole turn stand these themselves, a half at either end; beside others nothing, which is worse.
     """
     sizes = {name: over.shape[COORDINATES.index(name)] for name in over.ranges}
-    beside = {name: size // 2 + 1 if _whole_turn(over, name) else 1 for name, size in sizes.items()}
+    beside = {name: size // 2 + 1 if whole_turn(over, name) else 1 for name, size in sizes.items()}
     return [(beside[name], size, beside[name]) for name, size in sizes.items()]
 
 
@@ -224,7 +224,7 @@ def _depth(best: np.ndarray) -> np.ndarray:
     return depth
 
 
-def _whole_turn(over: PlacementSpace, name: str) -> bool:
+def whole_turn(over: PlacementSpace, name: str) -> bool:
     """Whether the last value of a coordinate stands beside the first."""
     covered = over.shape[COORDINATES.index(name)] * over.ranges[name][2]
     return name in ANGLES and abs(covered - TURN) < 1e-6

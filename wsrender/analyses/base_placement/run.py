@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
 from wsrender.analyses.base_placement.refined import AROUND, CELLS, DEVIATIONS, looked_at, refined
-from wsrender.analyses.base_placement.result import PlacementMap, entry_of_pareto, framed, least_value
+from wsrender.analyses.base_placement.result import PlacementMap, entry_of_pareto, framed, least_value, whole_turn
 from wsrender.analyses.base_placement.score import Score
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import (
@@ -62,7 +62,11 @@ CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e
 NEAR_BALLS_PER_S = 6e3  # the same under constraints, where searches in balls say which are out of reach
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
 BIT_BYTES, CELL_BYTES = 4, 60  # in files: of up to eight labels of a placement, and of a cell of the map
-COORDINATES_BYTES, ROW_BYTES = 144, 62  # of a placement while tables are made of it, and in what is kept of these
+# Of a placement beside its coordinates in tables, and where placements are ranked; of a cell of the map being made.
+ROW_BYTES, RANKED_BYTES, MAP_BYTES = 14, 62, 110
+MADE_BYTES = 100  # of a position of bases that the device makes
+# Pairs left by closed forms of which some are searched; bytes of what these searches start from, kept for more of them.
+LEFT_PAIRS, START_BYTES, SAMPLES_BYTES = 100, 3.4e6, 1e8
 BALL_BYTES, LEFT_BYTES = 20, 6e6  # of a pair that is searched along a joint, and of the few that this leaves
 DEPTH_BYTES = 16  # of a cell and a range while its distance from those that are worse is found
 OF_THE_WORLD = ("region", "orientation", "environment")  # constraints that see where the base stands
@@ -234,7 +238,7 @@ class BasePlacementAnalysis(Analysis):
         rows = columns * over.count + self.told_bytes
         drawn, seconds = pictures_cost(*PICTURES, *(["pareto"] if self.job.pareto else []))
         files = DOCUMENT_BYTES + drawn + rows + 7 * LISTED_BYTES * K
-        tables = max(COORDINATES_BYTES * over.count, ROW_BYTES * over.count + self._depth_bytes)
+        tables = self._tables_bytes + self._kept_for_more
         around = 2 * LEFT_BYTES + self._refined_bytes if self.job.refine else 0.0
         memory = kept + max(kept + self._decided_bytes, tables, around) + 7 * LISTED_MEMORY * K
         tried = (
@@ -243,6 +247,28 @@ class BasePlacementAnalysis(Analysis):
         seconds += TOLERANCE_S if self.job.refine else 0.0
         seconds += tried * K / self._rate + files / WRITTEN_PER_S + STARTS_S * self._searches
         return Cost(over.count * K, memory, files, seconds, Asks("over", "take larger steps"))
+
+    @property
+    def _tables_bytes(self) -> float:
+        """Of memory while tables are made, and the best placement is found."""
+        over, ranked = self.job.over, bool(self.scores) or self.job.weights is not None
+        row = 8.0 * len(over.ranges) + (RANKED_BYTES if ranked else ROW_BYTES)
+        return row * over.count + MAP_BYTES * self._cells + self._depth_bytes
+
+    @property
+    def _kept_for_more(self) -> float:
+        """Of memory for what searches of placements start from, as long as others may follow."""
+        return SAMPLES_BYTES * self._searches if self._searches else START_BYTES * self._leaves
+
+    @property
+    def _leaves(self) -> bool:
+        """Whether closed forms, without constraints, leave so many pairs that some are searched."""
+        return self.job.over.count / self._alike * len(self.targets) * LEFT >= LEFT_PAIRS
+
+    @property
+    def _cells(self) -> int:
+        """Of the map: of the first two ranges."""
+        return math.prod([len(self.job.over.values(name)) for name in [*self.job.over.ranges][:2]])
 
     @property
     def _bits_bytes(self) -> float:
@@ -268,14 +294,13 @@ class BasePlacementAnalysis(Analysis):
     def told_bytes(self) -> float:
         """Of files for the labels of all placements, and their map."""
         over = self.job.over
-        cells = math.prod([len(over.values(name)) for name in [*over.ranges][:2]])
-        return BIT_BYTES * self._bits * over.count + CELL_BYTES * cells
+        return BIT_BYTES * self._bits * over.count + CELL_BYTES * self._cells
 
     @property
     def kept_bytes(self) -> float:
-        """Of memory for what is known of all placements, and the table of it, which others see beside theirs."""
+        """Of memory for what is known of all placements, and tables of it, which others see beside theirs."""
         columns = len(self.job.over.ranges) + len(self.scores) + (self.job.weights is not None)
-        return self._bits_bytes + self.job.over.count * (8.0 * columns + 4)
+        return self._bits_bytes + self.job.over.count * (8.0 * columns + 4) + CELL_BYTES * self._cells
 
     @property
     def _together(self) -> int:
@@ -289,11 +314,25 @@ class BasePlacementAnalysis(Analysis):
         """Of memory while placements are decided, as many as are at a time."""
         K, places = len(self.targets), self.job.over.count / self._alike
         together = min(places, self._together)
+        if self._makes_bases:
+            positions = together * self._alike / math.prod(self.job.over.shape[3:])
+            return MADE_BYTES * positions + BIT_BYTES * self._bits * together + 1.5 * START_BYTES * self._leaves
         if self._constrained or self.score:
             solved = SEARCHED_BYTES * self._searches + self.program_bytes
         else:
             solved = max(self._solved_bytes(kind, together) for kind in self._kinds)
         return (PLACE_BYTES + PAIR_BYTES * K) * together + solved
+
+    @property
+    def _makes_bases(self) -> bool:
+        """Whether the device makes bases, and closed forms leave few pairs."""
+        forms = (closed_form_of(kind.chain, kind.name) for kind in self._kinds)
+        return self._by_bits and all(isinstance(form, ClosedForm) for form in forms)
+
+    @property
+    def _by_bits(self) -> bool:
+        """Whether placements may be decided by their bits, without constraints or a score of pairs."""
+        return not (self._constrained or self.score or isinstance(self.job.mounting, TableEdge))
 
     def _solved_bytes(self, kind: Kind, places: float) -> float:
         """Of memory for targets of a kind that a search decides, from so many placements."""
@@ -312,7 +351,10 @@ class BasePlacementAnalysis(Analysis):
     @property
     def _depth_bytes(self) -> float:
         """Of memory while the best placement is found that is farthest from those that are worse."""
-        cells = math.prod(before + size + after for before, size, after in framed(self.job.over))
+        frames = framed(self.job.over)
+        if self._alike > 1 and whole_turn(self.job.over, "yaw_deg"):  # one yaw says what all do
+            frames[-1] = (0, 1, 0)
+        cells = math.prod(before + size + after for before, size, after in frames)
         return cells * DEPTH_BYTES * len(self.job.over.ranges)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
@@ -329,7 +371,7 @@ class BasePlacementAnalysis(Analysis):
         others = [self._placements(execution.threads, score) for score in self.scores[1:]]
         for begin in range(start, end, each):
             numbers = range(begin, min(begin + each, end), self._alike)
-            if search.by_bits and not isinstance(self.job.mounting, TableEdge):
+            if self._by_bits and search.by_bits:
                 served, undecided, proven = search.bits(self.job.over, numbers)
                 rows = [served, undecided, proven]
             else:
@@ -344,9 +386,16 @@ class BasePlacementAnalysis(Analysis):
     def _placements(self, threads: int | None, score: Score | None = None) -> PlacementsOfKinds:
         """What decides all targets from placements of the job, by a score or the first."""
         score = score or self.score
-        value = score and replace(score, device=self.device, threads=threads)
-        admission = self._admission(self.base, self.constraints, threads)
-        return self._deciding(self._kinds, self.base, admission, threads, value)
+        if (made := self._made.get((threads, score))) is None:
+            value = score and replace(score, device=self.device, threads=threads)
+            admission = self._admission(self.base, self.constraints, threads)
+            made = self._made[threads, score] = self._deciding(self._kinds, self.base, admission, threads, value)
+        return made
+
+    @cached_property
+    def _made(self) -> dict[tuple[int | None, Score | None], PlacementsOfKinds]:
+        """What decides targets, kept with the samples that its searches start from: they are drawn once."""
+        return {}
 
     def solving(self, threads: int | None) -> Placements:
         """What finds configurations of targets that are whole poses, all of the same tolerances."""
@@ -462,6 +511,7 @@ class BasePlacementAnalysis(Analysis):
             values.append(
                 (second[0], looked_at(self._placements(execution.threads, second[0]), there.place).found.value)
             )
+        self._made.clear()  # the plans of other robots need memory too
         least = {score.name: float(score.sign * np.nanmin(value)) for score, value in values}
         entry = found.entry_at(coordinates[0], of) | least | entry
         if self.job.refine:

@@ -21,7 +21,7 @@ from wsrender.volume.voxels import Voxels
 
 UNREACHABLE, REACHABLE, UNDECIDED, BLOCKED = range(4)  # codes of labels; the k-th constraint blocks with BLOCKED + k
 CELL_BYTES, VOXEL_BYTES, LABEL_BYTES = 20, 12, 4  # of a cell, a voxel and a label in files
-MADE_BYTES = 60  # of a base pose while its maps are made
+MADE_BYTES = 14  # of a base pose while its maps are made
 MEASURES = {1: "{:.4g} m", 2: "{:.4g} m²", 3: "{:.4g} m³"}  # of cells, by the number of their axes
 
 
@@ -75,7 +75,9 @@ class InverseReachabilityAnalysis(Analysis):
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """As `base_placement` computes a shard of one target."""
-        return self.placements.over(*self.shards[shard]).compute(0, execution, tell)
+        own = self.shards[shard]
+        plan = self.placements if self.placements.shards == [own] else self.placements.over(*own)
+        return plan.compute(0, execution, tell)
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The base poses of both, in their order."""
