@@ -4,8 +4,10 @@ import asyncio
 import logging
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
+import psutil
 from dask import config
 from distributed import Nanny, Reschedule, Security, Status, Worker, WorkerPlugin, get_worker
 
@@ -118,7 +120,8 @@ async def _serve(
         except asyncio.CancelledError:
             continue
         except (OSError, TimeoutError, RuntimeError) as error:  # RuntimeError: Dask's nanny could not start its worker
-            log.warning("no worker at %s: %s; trying again", settings.scheduler, error)
+            if not stop.is_set():
+                log.warning("no worker at %s: %s; trying again", settings.scheduler, error)
         if not stop.is_set():
             await asyncio.sleep(RECONNECT_S)
 
@@ -135,7 +138,17 @@ async def _end(worker: Nanny) -> None:
     if worker.status == Status.running:
         await worker.close(timeout=STOP_S)
     elif worker.process is not None and worker.process.process is not None:
+        kernels = _descendants(worker.process.process.pid)  # which miss their parent once all is imported
         await worker.process.process.kill()
+        for process in kernels:
+            with suppress(psutil.Error):  # it may have ended by itself
+                process.kill()
+
+
+def _descendants(pid: int | None) -> list[psutil.Process]:
+    with suppress(psutil.Error):
+        return psutil.Process(pid).children(recursive=True) if pid is not None else []
+    return []
 
 
 def worker_options(settings: Settings) -> dict[str, Any]:

@@ -1,10 +1,16 @@
 """A worker of an existing cluster keeps trying to join it, and what Dask is told of workers."""
 
+import asyncio
+import subprocess
+import sys
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import distributed
+import psutil
 import pytest
 import yaml
 from dask import config
@@ -50,6 +56,49 @@ def test_what_keeps_a_worker_from_joining_is_said_and_tried_again(settings, monk
     assert attempts == ["tls://127.0.0.1:1"] * 3
     said = [record.getMessage() for record in caplog.records if record.name == worker.log.name]
     assert [str(fault) in text for text in said] == [True, True]
+
+
+def test_a_worker_that_is_stopped_while_it_starts_tries_nothing_again(settings, monkeypatch, caplog):
+    stop = threading.Event()
+
+    class Nanny:
+        status, process = distributed.Status.init, None
+
+        def __init__(self, scheduler, **options):
+            assert not stop.is_set()
+
+        async def __aenter__(self):
+            stop.set()
+            await asyncio.sleep(0.5)
+            raise RuntimeError("Nanny failed to start.")
+
+        async def __aexit__(self, *_):
+            pass
+
+    monkeypatch.setattr(worker, "Nanny", Nanny)
+    monkeypatch.setattr(worker, "security", lambda settings: None)
+    worker.serve_scheduler(settings, stop=stop)
+    assert stop.is_set() and not [record for record in caplog.records if record.name == worker.log.name]
+
+
+def test_a_worker_that_ends_while_it_starts_takes_what_it_has_started_along():
+    """Kernels that were just being imported lived on for as long as that takes."""
+    script = "import subprocess, sys; subprocess.Popen(['sleep', '600']); print('started', flush=True); input()"
+    with subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as parent:
+        assert parent.stdout.readline() == b"started\n"
+        (child,) = psutil.Process(parent.pid).children()
+
+        async def kill():
+            parent.kill()
+
+        process = SimpleNamespace(pid=parent.pid, kill=kill)
+        starting = SimpleNamespace(status=distributed.Status.starting, process=SimpleNamespace(process=process))
+        try:
+            asyncio.run(worker._end(starting))
+            assert psutil.wait_procs([child], timeout=10)[1] == []
+        finally:
+            with suppress(psutil.NoSuchProcess):
+                child.kill()
 
 
 LOST_WORKER = "distributed.deploy.lost-worker-timeout"  # after which an embedded cluster gives up a worker's place
