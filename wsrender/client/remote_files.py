@@ -1,6 +1,7 @@
 """The files of a job on a server: downloaded when needed, with resume, and verified."""
 
 import hashlib
+import json
 import re
 import shutil
 import tempfile
@@ -17,6 +18,7 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.operations import path_of
 from wsrender.client.range_file import RangeFile
+from wsrender.client.records import not_understood
 from wsrender.client.requests import Request, Server, Steps, T, TakeBytes, checked, sent, worth_repeating
 from wsrender.errors import ServerError
 from wsrender.results.export.artifacts import (
@@ -29,6 +31,7 @@ from wsrender.results.export.artifacts import (
 )
 from wsrender.results.export.atomic import staging_folder
 from wsrender.results.export.formats import of_file, readable
+from wsrender.results.export.result_format import current_document
 
 ATTEMPTS = 2  # at a file that was damaged on its way
 _SHA256 = re.compile(r'"([0-9a-f]{64})"')
@@ -62,6 +65,23 @@ def downloaded(
     finally:
         partial.unlink(missing_ok=True)
     raise ServerError(f"{path}: what arrived has another SHA-256 than the server says, in {ATTEMPTS} attempts")
+
+
+def result_document(server: Server, job_id: str) -> Steps[Document]:
+    """The result document of a job, in today's form; it may be long, so it is downloaded as files are.
+
+    Raises InputError where a later version wrote it, ServerError where something else comes, what `downloaded` raises.
+    """
+    path = f"{path_of(job_id)}/result"
+    with tempfile.TemporaryDirectory(prefix="wsrender-") as folder:
+        content = (yield from downloaded(server, path, Path(folder) / DOCUMENT)).read_bytes()
+    try:
+        found = json.loads(content)
+    except ValueError:
+        found = None
+    if not isinstance(found, dict):
+        raise not_understood(server.url, f"no JSON object at {path}")
+    return current_document(found)
 
 
 class _Download:
