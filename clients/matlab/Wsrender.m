@@ -24,7 +24,8 @@ classdef Wsrender < handle
     end
 
     function job = submit(self, document)
-      % Queue a job document, a struct; a single row of numbers that is a list of rows must stand in a cell.
+      % Queue a job document, a struct. A single point, configuration or name stands for a list of it; other lists of
+      % one item must stand in a cell, or jsonencode makes the item itself of them.
       job = self.post('/v1/jobs', jsonencode(document));
     end
 

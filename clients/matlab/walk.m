@@ -1,10 +1,10 @@
 % Ten minutes with a server; WSRENDER_SERVER is its address, WSRENDER_TOKEN a key where it asks for one.
 server = Wsrender(getenv('WSRENDER_SERVER'), getenv('WSRENDER_TOKEN'));
 
-% Indices at one configuration. A single row stands in a cell, or jsonencode makes a flat list of it.
+% Indices at one configuration; a matrix has a row for each of several.
 document = struct('analysis', 'indices_at', 'robot', struct('library', 'ur5e'));
-document.configurations = {[0, -1.5, 1.5, 0, 1, 0]};
-document.indices = {'manipulability'};
+document.configurations = [0, -1.5, 1.5, 0, 1, 0];
+document.indices = 'manipulability';
 job = server.wait(server.submit(document));
 [values, columns] = server.table(job, 'map.parquet');
 fprintf('indices_at: %.9g\n', values(1, strcmp(columns, 'manipulability')));

@@ -18,12 +18,27 @@ from wsrender_server.problems import Problem
 _SCHEMAS = "#/components/schemas/"
 _REFERENCE = re.compile(f'"{_SCHEMAS}([^"]+)"')
 BINARY = {"type": "string", "format": "binary"}
-_IF_NONE_MATCH = {
-    "name": "If-None-Match",
-    "in": "header",
-    "required": False,
-    "description": "Entity tags that the client has; 304 where the file's is among them.",
-    "schema": {"type": "string"},
+
+
+def _header(name: str, description: str) -> dict[str, Any]:
+    return {
+        "name": name,
+        "in": "header",
+        "required": False,
+        "description": description,
+        "schema": {"type": "string"},
+    }
+
+
+# By the status that answers them.
+_HEADERS = {
+    "304": [_header("If-None-Match", "Entity tags that the client has; 304 where the file's is among them.")],
+    "206": [
+        _header(
+            "Range", "Bytes of the file, such as `bytes=100-`: what is still missing of a download that broke off."
+        ),
+        _header("If-Range", "Entity tag that the file must still have; else it comes whole, whatever the range."),
+    ],
 }
 
 
@@ -47,8 +62,9 @@ def openapi_document(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
     for unused in ("HTTPValidationError", "ValidationError"):
         schemas.pop(unused, None)
     for operation in (operation for path in document["paths"].values() for operation in path.values()):
-        if "304" in operation["responses"]:
-            operation.setdefault("parameters", []).append(_IF_NONE_MATCH)
+        for status, headers in _HEADERS.items():
+            if status in operation["responses"]:
+                operation.setdefault("parameters", []).extend(headers)
         _type_bodies(operation)
         if not keys_needed and "security" in operation:
             operation["security"].append({})

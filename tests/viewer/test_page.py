@@ -85,6 +85,9 @@ def test_every_analysis_has_a_form_that_keeps_its_document(watched: Watched) -> 
             assert page.locator(f'[data-pointer^="#/{name}"]').count(), (analysis, name)
         page.get_by_text("Samples", exact=True).wait_for()
         assert page.locator(".problems li, .problem:not(:empty)").count() == 0, analysis
+        choices = "all => all.map((select) => [...select.options].map((option) => option.text))"
+        for labels in page.locator("select").evaluate_all(choices):
+            assert len({*labels}) == len(labels), (analysis, labels)
         edit.click()
         assert json.loads(page.get_by_label("Job document").input_value()) == document, analysis
         edit.click()

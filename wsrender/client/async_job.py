@@ -12,7 +12,7 @@ from wsrender.client import operations
 from wsrender.client.connection import AsyncConnection
 from wsrender.client.job_facts import JobFacts, OnInterrupt, Watched, check_interrupt, interrupt_note
 from wsrender.client.records import JobEvent, JobRecord
-from wsrender.client.remote_files import RemoteFiles
+from wsrender.client.remote_files import RemoteFiles, result_document
 from wsrender.client.remote_result import RemoteResult
 from wsrender.errors import WsrenderError
 from wsrender.keywords import keywords
@@ -58,7 +58,7 @@ class AsyncJob(JobFacts):
         """As `Job.result`. Files that are downloaded when they are used hold up the loop: `download` does not."""
         if error := (await self.wait())._failure():
             raise error
-        document = await self._connection.run(operations.result_document(self._connection.server, self.id))
+        document = await self._connection.run(result_document(self._connection.server, self.id))
         return RemoteResult(document, RemoteFiles(self._connection.waiting(), self.id, document))
 
     async def download(self, folder: str | Path, *, progress: bool = False) -> RemoteResult:

@@ -12,7 +12,7 @@ from wsrender.client import operations
 from wsrender.client.connection import Connection
 from wsrender.client.job_facts import JobFacts, OnInterrupt, Watched, check_interrupt, interrupt_note
 from wsrender.client.records import FINISHED, JobEvent, JobRecord
-from wsrender.client.remote_files import RemoteFiles
+from wsrender.client.remote_files import RemoteFiles, result_document
 from wsrender.client.remote_result import RemoteResult
 from wsrender.errors import WsrenderError
 from wsrender.keywords import keywords
@@ -72,7 +72,7 @@ class Job(JobFacts):
         """
         if error := self.wait()._failure():
             raise error
-        document = self._connection.run(operations.result_document(self._connection.server, self.id))
+        document = self._connection.run(result_document(self._connection.server, self.id))
         return RemoteResult(document, RemoteFiles(self._connection, self.id, document))
 
     def download(self, folder: str | Path, *, progress: bool = False) -> RemoteResult:

@@ -13,7 +13,6 @@ from wsrender.client.documents import sendable
 from wsrender.client.records import FINISHED, Estimate, JobDocument, JobRecord, JobState, job_record, not_understood
 from wsrender.client.requests import OnLoss, Pause, Request, Server, Steps, answer, asked, checked, member
 from wsrender.errors import WaitTimeoutError
-from wsrender.results.export.result_format import current_document
 
 EVENTS = "text/event-stream"
 PAGE = 100  # jobs in one answer
@@ -151,11 +150,6 @@ def changed(server: Server, job_id: str, verb: str) -> Steps[JobRecord]:
 def deleted(server: Server, job_id: str) -> Steps[None]:
     """Nothing: the server has forgotten the job."""
     yield from asked(server, Request("DELETE", path_of(job_id)), resend=False)
-
-
-def result_document(server: Server, job_id: str) -> Steps[dict[str, Any]]:
-    """The result document of a job, in today's form. Raises InputError where a later version wrote it."""
-    return current_document((yield from answer(server, Request("GET", f"{path_of(job_id)}/result"))))
 
 
 def events_of(job_id: str, after: str) -> Request:

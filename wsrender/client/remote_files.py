@@ -1,6 +1,8 @@
 """The files of a job on a server: downloaded when needed, with resume, and verified."""
 
 import hashlib
+import io
+import json
 import re
 import shutil
 import tempfile
@@ -9,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from urllib.parse import quote
 
 import httpx2
@@ -17,6 +19,7 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.operations import path_of
 from wsrender.client.range_file import RangeFile
+from wsrender.client.records import not_understood
 from wsrender.client.requests import Request, Server, Steps, T, TakeBytes, checked, sent, worth_repeating
 from wsrender.errors import ServerError
 from wsrender.results.export.artifacts import (
@@ -29,6 +32,7 @@ from wsrender.results.export.artifacts import (
 )
 from wsrender.results.export.atomic import staging_folder
 from wsrender.results.export.formats import of_file, readable
+from wsrender.results.export.result_format import current_document
 
 ATTEMPTS = 2  # at a file that was damaged on its way
 _SHA256 = re.compile(r'"([0-9a-f]{64})"')
@@ -54,23 +58,53 @@ def downloaded(
     target.parent.mkdir(parents=True, exist_ok=True)
     partial = target.with_name(f"{target.name}.part")
     try:
-        for _ in range(ATTEMPTS):
-            download = _Download(partial, on_bytes)
-            yield from _fetched(server, path, format, download)
-            if (sha256 or download.announced) in (None, download.digest.hexdigest()):
-                return partial.replace(target)
+        with partial.open("wb") as file:
+            yield from _written(server, path, file, sha256, format, on_bytes)
+        return partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def _written(
+    server: Server, path: str, file: BinaryIO, sha256: str | None, format: str | None, on_bytes: OnBytes | None
+) -> Steps[None]:
+    """Write what `downloaded` downloads to an open file."""
+    for _ in range(ATTEMPTS):
+        download = _Download(file, on_bytes)
+        yield from _fetched(server, path, format, download)
+        if (sha256 or download.announced) in (None, download.digest.hexdigest()):
+            return
     raise ServerError(f"{path}: what arrived has another SHA-256 than the server says, in {ATTEMPTS} attempts")
 
 
-class _Download:
-    """What has arrived of a file: its bytes on disk, their digest, and the server's tag of the whole."""
+def result_document(server: Server, job_id: str) -> Steps[Document]:
+    """The result document of a job, in today's form; it may be long, so it is downloaded as files are.
 
-    def __init__(self, partial: Path, on_bytes: OnBytes | None):
-        self.partial, self.on_bytes = partial, on_bytes or (lambda have: None)
-        self.digest, self.have, self.etag = hashlib.sha256(), 0, ""
-        partial.write_bytes(b"")
+    Raises InputError where a later version wrote it, ServerError where something else comes, what `downloaded` raises.
+    """
+    path = f"{path_of(job_id)}/result"
+    file = io.BytesIO()
+    yield from _written(server, path, file, None, None, None)
+    try:
+        found = json.loads(file.getvalue())
+    except ValueError:
+        found = None
+    if not isinstance(found, dict):
+        raise not_understood(server.url, f"no JSON object at {path}")
+    return current_document(found)
+
+
+class _Download:
+    """What has arrived in a file: how many bytes, their digest, and the server's tag of the whole."""
+
+    def __init__(self, file: BinaryIO, on_bytes: OnBytes | None):
+        self.file, self.on_bytes, self.etag = file, on_bytes or (lambda have: None), ""
+        self._begin()
+
+    def _begin(self) -> None:
+        self.digest, self.have = hashlib.sha256(), 0
+        self.file.seek(0)
+        self.file.truncate()
 
     @property
     def announced(self) -> str | None:
@@ -89,16 +123,15 @@ class _Download:
         """What takes the bytes of an answer: the rest, or the whole anew."""
         self.etag = response.headers.get("ETag", "")
         if response.status_code != 206:
-            self.digest, self.have = hashlib.sha256(), 0
-        with self.partial.open("ab" if self.have else "wb") as file:
+            self._begin()
 
-            def take(piece: bytes) -> None:
-                file.write(piece)
-                self.digest.update(piece)
-                self.have += len(piece)
-                self.on_bytes(self.have)
+        def take(piece: bytes) -> None:
+            self.file.write(piece)
+            self.digest.update(piece)
+            self.have += len(piece)
+            self.on_bytes(self.have)
 
-            yield take
+        yield take
 
 
 def _fetched(server: Server, path: str, format: str | None, download: _Download) -> Steps[None]:

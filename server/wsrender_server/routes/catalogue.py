@@ -120,8 +120,8 @@ class KeptModelView(ModelView):
     summary="List the analyses",
     response_model=Page[AnalysisView],
     responses={
-        **PARTLY,
         200: {"description": "The analyses", "headers": ETAG},
+        304: PARTLY[304],
         **problem_responses(401, 403, 416),
     },
 )

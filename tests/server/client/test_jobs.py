@@ -241,6 +241,19 @@ def test_a_download_that_lost_only_its_end_is_whole(finished, client, local):
     assert finished.requests[-1].headers["Range"] == f"bytes={len(content)}-"
 
 
+def test_a_result_document_goes_on_and_is_verified_too(finished, client, local, tmp_path):
+    """It may be as long as a job document."""
+    path, document = "/v1/jobs/j1/result", local[1] / "result.json"
+    finished.answer("GET", path, serves(document, breaks=[100, 0, 200]))
+    assert client.job("j1").result().document == local[0].document
+    asked = [request.headers.get("Range") for request in finished.sent("GET", path)]
+    assert asked == [None, "bytes=100-", "bytes=100-", "bytes=300-"]
+    damaged = document.read_bytes().replace(b"workspace", b"workspade")
+    finished.answer("GET", path, (200, {"ETag": f'"{hashlib.sha256(document.read_bytes()).hexdigest()}"'}, damaged))
+    with pytest.raises(ws.ServerError, match="/result: what arrived has another SHA-256 than the server says"):
+        client.job("j1").result()
+
+
 def test_names_of_files_may_be_odd(server, client, tmp_path):
     """What stands for something in an address is written otherwise there."""
     name, content = "maps/left #1? 100%.csv", b"x\n1\n"

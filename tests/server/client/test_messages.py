@@ -81,6 +81,14 @@ def test_a_result_of_a_later_format_is_refused(server, client):
         client.job("j1").result()
 
 
+@pytest.mark.parametrize("answer", [HTML, (200, {}, b""), says([1, 2])])
+def test_a_result_that_is_none_is_named(answer, server, client):
+    server.answer("GET", "/v1/jobs/j1", says({**JOB, "state": "succeeded"}))
+    server.answer("GET", "/v1/jobs/j1/result", answer)
+    with pytest.raises(ws.ServerError, match="answers with no JSON object at /v1/jobs/j1/result, which this client"):
+        client.job("j1").result()
+
+
 def test_an_older_server_that_does_not_know_a_field_says_so(server, client):
     unknown = refuses(422, "invalid_document", errors=[{"pointer": "#/refined_volume", "detail": "is unknown"}])
     server.answer("POST", "/v1/jobs", unknown)

@@ -138,8 +138,12 @@ def test_bodies_that_are_not_json_are_bytes_or_text(document):
 
 def test_headers_that_clients_set_are_parameters(client, document):
     paths = document["paths"]
-    named = {each["name"] for each in paths["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]}
-    assert "If-None-Match" in named
+    for path, methods in paths.items():
+        for method, operation in methods.items():
+            named = {each["name"] for each in operation.get("parameters", ()) if each["in"] == "header"}
+            assert ("If-None-Match" in named) == ("304" in operation["responses"]), (method, path)
+            assert ({"Range", "If-Range"} <= named) == ("206" in operation["responses"]), (method, path)
+    assert "206" in paths["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["responses"]
     parameters = {each["name"]: each for each in paths["/v1/jobs"]["post"]["parameters"]}
     assert set(parameters) == {"Idempotency-Key", "wait"}
     schema = parameters["Idempotency-Key"]["schema"]

@@ -67,8 +67,14 @@ export class Schemas {
   /** The alternatives of a schema, null apart; one for a schema that is none. */
   variants(schema: Schema): { variants: Variant[]; nullable: boolean } {
     const all = (schema.anyOf ?? (schema.discriminator ? schema.oneOf : undefined) ?? [schema]).map((part) => this.resolved(part));
-    const variants = all.filter((part) => part.type !== "null").map((part) => ({ label: this.named(part, schema.discriminator?.propertyName), schema: part }));
+    const among = all.some((part) => this.listOf(part) === "array");
+    const variants = all.filter((part) => part.type !== "null").map((part) => ({ label: among && this.listOf(part) === "number" ? "one" : this.named(part, schema.discriminator?.propertyName), schema: part }));
     return { variants, nullable: variants.length < all.length };
+  }
+
+  /** The type of a list's items; undefined of what is no list. Beside a list of rows a list of numbers is one of these. */
+  private listOf(part: Schema): string | undefined {
+    return part.type === "array" && !part.prefixItems ? this.resolved(part.items ?? {}).type : undefined;
   }
 
   /** The sources of which exactly one is to be given, such as of a robot's model; [] where there are none. */
