@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -259,7 +260,7 @@ class InverseSolver:
         """
         at = np.flatnonzero(tries.reached)
         accuracy = replace(self.accuracy, position_m=0.0, angle_rad=0.0, flatness=0.0)
-        options = self._execution | {"precision": "float64"}
+        options: dict[str, Any] = self._execution | {"precision": "float64"}
         on = solve_inverse(self.chain, targets[at], tries.q[at], accuracy, **options)
         if len(left := np.flatnonzero(~self.meets(on))):
             on = on.replaced(left, self._held_at(on.q[left], targets[at[left]]))

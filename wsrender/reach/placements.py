@@ -189,7 +189,7 @@ class Placements:
         served, proven = self._certain_bits(placed(angles) @ self.base.T_frame_base, positions[:, :3], moved, targets)
         asked = np.zeros((8 * len(served), 1), bool)
         asked[targets] = True
-        undecided, left = np.zeros_like(served), ~(served | proven) & _packed(asked)
+        undecided, left = np.zeros_like(served), np.bitwise_and(~(served | proven), _packed(asked), dtype=np.uint8)
         for places in _parts(np.flatnonzero(left.any(axis=0)), BATCH // len(targets)):
             coordinates = space.coordinates(numbers.start + numbers.step * places)
             place, k = np.nonzero(np.unpackbits(left[:, places], axis=0, bitorder="little")[targets].T)
