@@ -57,6 +57,7 @@ def serve_until_stopped(
     guarded, limits = _FaultsAtStart(app), ConnectionLimits(settings)
     config = uvicorn.Config(
         guarded,
+        loop="asyncio",  # whatever others have installed: streams hang with uvloop, on which nothing here is tested
         http=partial(Connection, limits=limits),  # pyright: ignore[reportArgumentType]
         ws=partial(WebSocketConnection, limits=limits),  # pyright: ignore[reportArgumentType]
         proxy_headers=False,  # the settings say which proxies are trusted

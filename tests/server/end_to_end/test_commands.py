@@ -32,6 +32,15 @@ def wsrender(*arguments, **environment):
     )
 
 
+def test_another_event_loop_that_is_installed_is_not_taken(tmp_path, monkeypatch):
+    """With uvloop, which other packages bring along, a stream of forces never opened."""
+    (tmp_path / "uvloop.py").write_text("raise SystemExit('uvloop was taken')")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{os.environ.get('PYTHONPATH', '')}")
+    with LocalServer(tmp_path / "data") as server, ws.Client(server.url) as client:
+        assert list(client.jobs()) == []
+    assert "uvloop" not in server.log.read_text()
+
+
 def test_keys_guard_the_server(tmp_path):
     data = ("--data-dir", str(tmp_path / "data"))
     made = wsrender("keys", "create", "--name", "ann", *data)
