@@ -3,8 +3,8 @@
 import asyncio
 import gc
 import uuid
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cache, partial
 from itertools import repeat
 from pathlib import Path
@@ -31,10 +31,13 @@ from wsrender.robots import archives, library, loading, mjcf, xml_source
 from wsrender_server.job_body import LONGEST_HERE, SubmissionOptions, check_size, read_body, refused
 from wsrender_server.jobs.child_process import give_back_memory
 from wsrender_server.jobs.documents import CanonicalDocument, uploads_in
+from wsrender_server.jobs.faults import StoreUnavailable
 from wsrender_server.jobs.files import write_durably
-from wsrender_server.jobs.store import JobStore
+from wsrender_server.jobs.records import Submission
+from wsrender_server.jobs.store import ATTEMPTS, BUSY, Again, JobStore, SubmissionRequest
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
 from wsrender_server.side_process import SideProcess
+from wsrender_server.together import Together
 
 Found = TypeVar("Found")
 
@@ -42,6 +45,7 @@ ROOTS = ("mujoco", "robot", "sdf")
 LOCAL_ONLY = "is for local runs only; upload the file and name it by model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
 LONGEST_S = 60.0  # that a long body may take
+LONGEST_TOGETHER = 1 << 14  # bytes of a body that others wait for
 EDITED: TypeAdapter[Edited] = TypeAdapter(Edited)
 
 
@@ -188,10 +192,20 @@ def uploads_of_edited(text: bytes) -> list[tuple[str, str]]:
     return [*uploads_in(document)]
 
 
+@dataclass(frozen=True)
+class _Body:
+    """The body of a submission, and what makes a request to the store of it."""
+
+    owner: str
+    text: bytes
+    request_of: Callable[[Admitted], SubmissionRequest]
+
+
 class Admissions:
     """Reads bodies: short bodies in a thread, long ones in a child process, one after another.
 
-    A body of 15 MB may become a gigabyte of lists, and holds Python's lock for seconds.
+    A body of 15 MB may become a gigabyte of lists, and holds Python's lock for seconds. Of many short submissions at
+    once all share a turn of a thread, and a transaction: turns are what they would wait for.
     """
 
     def __init__(self, store: JobStore, process: SideProcess, max_samples: int):
@@ -199,12 +213,50 @@ class Admissions:
         self._process = process
         self._max_samples = max_samples
         self._warming: asyncio.Task[Any] | None = None
+        self._together = Together(self._submit_all)
+
+    async def submit(self, owner: str, text: bytes, request_of: Callable[[Admitted], SubmissionRequest]) -> Submission:
+        """The submission of a body, as ``request_of`` asks for it.
+
+        Raises as `admit`, `check_uploads` and `JobStore.submit`.
+        """
+        if len(text) > LONGEST_TOGETHER:
+            return await self.of(owner, text, lambda found: self._submit_alone(request_of(found), found.written))
+        asked: _Body | SubmissionRequest = _Body(owner, text, request_of)
+        for _ in range(ATTEMPTS):
+            answer = await self._together.answer(asked)
+            if isinstance(answer, Submission):
+                return answer
+            if not isinstance(answer, Again):  # too long for a row
+                return await run_in_threadpool(self._submit_alone, answer)
+            asked = await run_in_threadpool(self._store.prepare_again, answer)
+        raise StoreUnavailable(BUSY)
+
+    def _submit_all(
+        self, asked: Sequence[_Body | SubmissionRequest]
+    ) -> "list[Submission | Again | SubmissionRequest | Exception]":
+        """What comes of each, or what it raises; a request where it is to go alone."""
+        answers: list[Any] = [self._request(each) for each in asked]
+        ready = [k for k, each in enumerate(answers) if isinstance(each, SubmissionRequest) and each.document.is_short]
+        if ready:
+            for k, answer in zip(ready, self._store.submit_all([answers[k] for k in ready]), strict=True):
+                answers[k] = answer
+        return answers
+
+    def _request(self, asked: _Body | SubmissionRequest) -> SubmissionRequest | Exception:
+        if isinstance(asked, SubmissionRequest):
+            return asked
+        try:
+            return self._checked(asked.owner, admit(asked.text, self._max_samples), asked.request_of)
+        except Exception as error:  # its own; the others go on
+            return error
+
+    def _submit_alone(self, request: SubmissionRequest, written: Path | None = None) -> Submission:
+        options = {each.name: getattr(request, each.name) for each in fields(request)}
+        return self._store.submit(written=written, **options)
 
     async def of(self, owner: str, text: bytes, then: Callable[[Admitted], Found]) -> Found:
-        """What ``then`` makes of the submission of a body, in a thread; raises as `admit` and `check_uploads`.
-
-        One turn of a thread for all of it: turns are what many requests at once wait for.
-        """
+        """What ``then`` makes of the submission of a body, in a thread; raises as `admit` and `check_uploads`."""
         if len(text) <= LONGEST_HERE:
             return await run_in_threadpool(lambda: self._checked(owner, admit(text, self._max_samples), then))
         scratch = self._store.files.root / "scratch"

@@ -3,9 +3,9 @@
 import copy
 import json
 from collections import Counter
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 from typing import Annotated, Any
 
@@ -26,6 +26,7 @@ from wsrender.results.view import Edited
 from wsrender.robots import library
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
+from wsrender_server.requests import at_end
 
 JSON_TYPES = ("application/json", "text/json")
 LABEL_KEY = r"^[A-Za-z0-9][A-Za-z0-9._/-]{0,62}$"
@@ -174,31 +175,25 @@ class Places:
         self.taken -= Counter([owner])
 
 
-async def job_body(request: Request) -> AsyncIterator[bytes]:
+async def job_body(request: Request) -> bytes:
     """A body of JSON, else HttpProblem 415; of long ones few are held at a time: HttpProblem 429 for another."""
     _check_type(request)
-    async for body in held_body(request, request.app.state.parts.long_bodies):
-        yield body
+    return await held_body(request, request.app.state.parts.long_bodies)
 
 
-async def held_body(request: Request, places: Places) -> AsyncIterator[bytes]:
-    """A body, which has one of the places while it is read and used where it is long. HttpProblem 429 without one."""
+async def held_body(request: Request, places: Places) -> bytes:
+    """A body, which has one of the places until the request has ended where it is long. HttpProblem 429 without one."""
     owner = getattr(request.state, "owner", "")  # who asks is looked at first
     pieces, size, has_place = [], 0, False
-    try:
-        async for piece in request.stream():
-            size += len(piece)
-            if size > LONGEST_HERE and not has_place:
-                has_place = places.take(owner)
-                if not has_place:
-                    raise HttpProblem(429, "too many long bodies are being read", "busy", retryable=True)
-            pieces.append(piece)
-        body = b"".join(pieces)
-        pieces.clear()
-        yield body
-    finally:
-        if has_place:
-            places.give_back(owner)
+    async for piece in request.stream():
+        size += len(piece)
+        if size > LONGEST_HERE and not has_place:
+            has_place = places.take(owner)
+            if not has_place:
+                raise HttpProblem(429, "too many long bodies are being read", "busy", retryable=True)
+            at_end(request, partial(places.give_back, owner))
+        pieces.append(piece)
+    return b"".join(pieces)
 
 
 def body_schemas() -> dict[str, Any]:

@@ -3,12 +3,13 @@
 import re
 import time
 import uuid
-from collections.abc import MutableMapping
+from collections.abc import Callable, MutableMapping
 from typing import Any
 
 import structlog
 from anyio import BrokenResourceError
 from starlette.datastructures import MutableHeaders
+from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from wsrender_server.metrics import Metrics
@@ -20,6 +21,11 @@ UPLOADS = "/v1/models"
 SAFE_HEADERS = {"X-Content-Type-Options": "nosniff"}
 
 log = structlog.get_logger("wsrender.http")
+
+
+def at_end(request: Request, function: Callable[[], None]) -> None:
+    """Call a function once a request has ended, however it does; on the event loop."""
+    request.state.at_end.append(function)
 
 
 class RequestLayer:
@@ -40,6 +46,7 @@ class RequestLayer:
             return
         state: MutableMapping[str, Any] = scope.setdefault("state", {})
         state["request_id"] = request_id = _request_id(scope)
+        state["at_end"] = ends = []
         started, status, first_byte = time.perf_counter(), 0, 0.0
 
         async def send_with_headers(message: Message) -> None:
@@ -64,6 +71,8 @@ class RequestLayer:
                 response = response_of_problem(problem_of_error(error), request_id)
                 await response(scope, receive, send_with_headers)
             finally:
+                for each in ends:
+                    each()
                 self._record(scope, state, status, first_byte, time.perf_counter() - started)
 
     def _limited(self, scope: Scope, receive: Receive) -> Receive:

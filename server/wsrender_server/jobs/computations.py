@@ -32,6 +32,7 @@ from wsrender_server.jobs.sole_use import SoleUse
 from wsrender_server.jobs.tables import ArtifactFile, Computation, DeviceTarget, Job, enter, finish, move, report
 
 KEEP_TIMES_S = 5.0
+STATES = {str(state): state for state in ComputationState}  # of thousands of rows
 
 
 class ComputationStore:
@@ -51,20 +52,19 @@ class ComputationStore:
         query = query.where(Computation.state.in_(UNFINISHED))
         query = query.order_by(Computation.priority.desc(), Computation.created_at)
         with self.transactions.read() as session:
-            return {row.id: (ComputationState(row.state), row.attempt) for row in session.execute(query)}
+            return {key: (STATES[state], attempt) for key, state, attempt in session.execute(query)}
 
-    def in_turn(self, computations: Collection[str]) -> list[str]:
-        """Those of some computations that are unfinished, the most urgent first; of equals the first of every owner.
+    def in_turn(self, most: int, but: Collection[str] = ()) -> list[str]:
+        """So many unfinished computations, the most urgent first, ``but`` some: of equals the first of every owner.
 
         Then the second of every owner, and so on.
         """
         of_owner = {"partition_by": (Computation.priority, Computation.owner), "order_by": Computation.created_at}
         place = func.row_number().over(**of_owner)
         query = select(Computation.id).where(Computation.state.in_(UNFINISHED))
-        query = query.order_by(Computation.priority.desc(), place, Computation.created_at)
-        wanted = frozenset(computations)
+        query = query.order_by(Computation.priority.desc(), place, Computation.created_at).limit(most + len(but))
         with self.transactions.read() as session:
-            return [key for key in session.scalars(query) if key in wanted]
+            return [key for key in session.scalars(query) if key not in but][:most]
 
     def computation(self, computation_id: str) -> ComputationRecord | None:
         """A computation with its document."""

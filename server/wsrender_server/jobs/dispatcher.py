@@ -24,7 +24,8 @@ TICK_S = 0.1
 LOOK_S = 1.0  # between looks at a table that this process has not changed
 MOST_LAUNCHES = 16  # at a tick: whoever asks the server for anything has their turn in between
 AHEAD = 16  # attempts that wait at the scheduler; where more do, workers need no others yet
-FEW_LAUNCHES = 1  # at a tick then: whoever starts workers for what waits sees ever more
+FEW_LAUNCHES = 1  # now and then: whoever starts workers for what waits sees ever more
+PACE_S = 0.5
 RECORD_S = 0.5
 PAUSE_S = 1.0
 MOST_LOSSES = 4
@@ -52,6 +53,7 @@ class Dispatcher:
         self._shares = defaultdict[int, FairShare](FairShare)  # by priority: turns count among equals
         self._generation = 0  # of the scheduler's losses
         self._recorded = 0.0
+        self._launched = 0.0
         self._ticked = 0.0
         self._known: dict[str, tuple[ComputationState, int]] = {}  # what is unfinished, as it was when it was looked at
         self._looked = 0.0
@@ -178,11 +180,17 @@ class Dispatcher:
 
     def _launch_some(self, most: int = MOST_LAUNCHES) -> None:
         """Hand out what waits, of much the first; owners take turns."""
-        most = most if self._waiting() < AHEAD else FEW_LAUNCHES
+        now = time.monotonic()
+        if self._waiting() >= AHEAD:
+            if now - self._launched < PACE_S:
+                return
+            most = FEW_LAUNCHES
         stopping = ComputationState.STOPPING
         ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
         if len(ready) > most:
-            ready = self.store.in_turn(ready)[:most]
+            ready = self.store.in_turn(most, but=self._known.keys() - set(ready))
+        if ready:
+            self._launched = now
         for computation_id in ready:
             self._launch(computation_id)
 

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -71,7 +71,7 @@ class CanonicalDocument:
     @property
     def facts(self) -> dict[str, Any]:
         """All but its text, as JSON."""
-        return {name: value for name, value in asdict(self).items() if name != "text"}
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.name != "text"}
 
     @property
     def is_short(self) -> bool:

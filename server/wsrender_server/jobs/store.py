@@ -5,7 +5,7 @@ import uuid
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -60,40 +60,53 @@ from wsrender_server.jobs.tables import (
     record_of,
     subscribe,
 )
-from wsrender_server.jobs.together import Together
 from wsrender_server.jobs.webhooks.store import WebhookStore
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
 Events = list[EventRecord]  # "list" is a method below
 Jobs = list[JobRecord]
-Answers = list[Submission | str | Exception]
+Answers = list["Submission | Again | Exception"]
 
 LONGEST_TEXT, MOST_LABELS, HIGHEST_PRIORITY = 255, 32, 1000
 NOT_IN_TEXT = re.compile("[\x00-\x1f\x7f\ud800-\udfff]")  # controls, and lone surrogates, which no database keeps
 ATTEMPTS = 5  # of a submission whose twin is submitted at the same moment
+BUSY = "the same job is being submitted many times at once; nothing was changed, try again"
 
 
 @dataclass(frozen=True)
-class _Request:
-    """What is asked for by a submission; ``new`` is the id of its computation where there is none yet."""
+class SubmissionRequest:
+    """What is asked for by a submission of a canonical job document (all defaults present).
+
+    ``body_hash`` identifies the request's body, so that an idempotency key repeated with another is noticed.
+    """
 
     owner: str
     document: CanonicalDocument
-    new: str
-    labels: dict[str, str]
-    priority: int
-    timeout_s: float | None
-    idempotency_key: str | None
-    body_hash: str
+    labels: Mapping[str, str] = field(default_factory=dict)
+    priority: int = 0
+    timeout_s: float | None = None
+    idempotency_key: str | None = None
+    body_hash: str = ""
     checked: str = ""
     """A computation whose files are there."""
+    new: str = field(default_factory=lambda: uuid.uuid4().hex)
+    """The id of its computation, where there is none yet."""
+
+
+@dataclass(frozen=True)
+class Again:
+    """A submission that is to be asked for again, once `JobStore.prepare_again` has looked at files or others' rows."""
+
+    request: SubmissionRequest
+    computation: str | None
+    """Whose files are to be checked; None: another process inserted the same a moment before."""
 
 
 class _Known:
     """What all submissions of a transaction ask the database, asked once; it goes on with what they add."""
 
-    def __init__(self, session: Session, requests: Sequence[_Request], identity: Identity):
+    def __init__(self, session: Session, requests: Sequence[SubmissionRequest], identity: Identity):
         targets = {row.device: row.target for row in session.scalars(select(DeviceTarget))}
         self.keys = {
             request.new: identity.key(request.owner, request.document, targets.get(request.document.device))
@@ -103,8 +116,10 @@ class _Known:
         # Locked until the transaction ends; in order, so that two transactions never wait for each other.
         found = session.scalars(query.order_by(Computation.id).with_for_update())
         self.computations = {computation.key: computation for computation in found}
-        self.new: set[str] = set()
-        """Computations that were added."""
+        self.added: dict[str, Computation] = {}
+        """Computations that were added, by id."""
+        self.jobs: list[Job] = []
+        """Jobs that were added."""
         self.queued: dict[str, int] = {}
         """Unfinished jobs by owner, of those who were looked at."""
 
@@ -133,7 +148,6 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         self.max_model_bytes_per_owner = max_model_bytes_per_owner
         self.timeout_of = timeout_of
         self.sole_use = SoleUse(engine)
-        self._submissions = Together(self._submit_all)
         self.running_since = {}
         self.removed = Counter[str]()  # by retention in this process: things by kind, and bytes
         self.deliveries = Counter[str]()
@@ -160,48 +174,70 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         document: CanonicalDocument | Mapping[str, Any],
         *,
         written: Path | None = None,
-        labels: Mapping[str, str] | None = None,
-        priority: int = 0,
-        timeout_s: float | None = None,
-        idempotency_key: str | None = None,
-        body_hash: str = "",
+        **options: Any,
     ) -> Submission:
-        """A new job of a canonical job document (all defaults present), whose text may be ``written`` to a file.
+        """A new job of a canonical job document, whose text may be ``written`` to a file.
 
         It is answered from the cache, joins a twin that is running, or waits; the row is committed when this returns.
-        ``body_hash`` identifies the request's body, so that an idempotency key repeated with another is noticed.
+        ``options`` are those of `SubmissionRequest`.
+
         Raises IdempotencyConflict, QueueFull, DiskFull; InputError for a robot given by a path, and for labels, key or
         priority out of bounds.
         """
-        _check_options(labels or {}, priority, idempotency_key)
-        self.files.check_space()
         if not isinstance(document, CanonicalDocument):
             document = CanonicalDocument.of(document)
-        new, used = uuid.uuid4().hex, ""  # id of the computation, where there is none yet; of that which is used
-        document = document.kept(self.files, new, written)
-        request = _Request(owner, document, new, dict(labels or {}), priority, timeout_s, idempotency_key, body_hash)
+        request, used = SubmissionRequest(owner, document, **options), ""
+        _check_options(request)
+        self.files.check_space()
+        new = request.new
+        request = replace(request, document=document.kept(self.files, new, written))
         try:
             for _ in range(ATTEMPTS):
-                try:
-                    answer = self._submissions.answer(request)
-                except IntegrityError:
-                    continue  # another process inserted the same key or computation a moment before
+                (answer,) = self.submit_all([request])
                 if isinstance(answer, Submission):
                     used = answer.computation
-                    if not answer.replayed:
-                        self.changes.notify(answer.job.id)
                     return answer
-                self.check_result(answer)  # takes as long as files are large: in no transaction
-                if document.text is None:
-                    self.files.mend_document(answer, document.sha256, new)
-                request = replace(request, checked=answer)
+                if isinstance(answer, Exception):
+                    raise answer
+                request = self.prepare_again(answer)
         except CommitUnknown:
             used = new  # a row may name its document; where none does, it goes as what nothing names
             raise
         finally:
             if used != new:
                 self.files.forget_document(new)
-        raise StoreUnavailable("the same job is being submitted many times at once; nothing was changed, try again")
+        raise StoreUnavailable(BUSY)
+
+    def submit_all(self, requests: Sequence[SubmissionRequest]) -> Answers:
+        """Submissions in one transaction: what came of each, in order, or what `submit` would raise.
+
+        A transaction waits for the disk, however much is in it. Documents that are too long for a row are in their
+        files, as `CanonicalDocument.kept` leaves them. Where another process inserts the same, each goes alone.
+        """
+        try:
+            self.files.check_space()
+            with self.transactions.write() as session, session.no_autoflush:
+                known = _Known(session, requests, self.identity)
+                answers = [self._answer(session, known, request) for request in requests]
+                session.bulk_save_objects([*known.added.values(), *known.jobs])  # before what refers to them
+        except IntegrityError:
+            if len(requests) == 1:
+                return [Again(requests[0], None)]
+            return [answer for request in requests for answer in self.submit_all([request])]
+        entered = [each for each in answers if isinstance(each, Submission) and not each.replayed]
+        if entered:
+            self.changes.notify(*(each.job.id for each in entered))
+        return answers
+
+    def prepare_again(self, again: Again) -> SubmissionRequest:
+        """The submission once the files of its computation were looked at: it takes as long as they are large."""
+        request, computation = again.request, again.computation
+        if computation is None:
+            return request
+        self.check_result(computation)
+        if request.document.text is None:
+            self.files.mend_document(computation, request.document.sha256, request.new)
+        return replace(request, checked=computation)
 
     def get(self, owner: str, job_id: str) -> JobRecord | None:
         """A job."""
@@ -331,28 +367,15 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
             query = select(Event).where(Event.job_id == job_id, Event.number > after).order_by(Event.number)
             return JobState(state), [EventRecord(row.number, row.type, row.data) for row in session.scalars(query)]
 
-    def _submit_all(self, requests: Sequence["_Request"]) -> Answers:
-        """Submissions in one transaction: for each what came of it, or the computation whose files are to be checked.
-
-        Where another process inserts the same, each goes alone.
-        """
-        try:
-            with self.transactions.write() as session:
-                known = _Known(session, requests, self.identity)
-                return [self._answer(session, known, request) for request in requests]
-        except IntegrityError as error:
-            if len(requests) == 1:
-                return [error]
-        return [answer for request in requests for answer in self._submit_all([request])]
-
-    def _answer(self, session: Session, known: "_Known", request: "_Request") -> Submission | str | Exception:
+    def _answer(self, session: Session, known: "_Known", request: SubmissionRequest) -> Submission | Again | Exception:
         """What comes of one submission of a transaction; the others go on where it is refused."""
         try:
+            _check_options(request)
             return self._replay(session, request) or self._enter(session, known, request)
         except (IdempotencyConflict, QueueFull, InputError) as error:  # before anything of it was added
             return error
 
-    def _replay(self, session: Session, request: "_Request") -> Submission | None:
+    def _replay(self, session: Session, request: SubmissionRequest) -> Submission | None:
         if request.idempotency_key is None:
             return None
         key = Job.owner == request.owner, Job.idempotency_key == request.idempotency_key
@@ -364,7 +387,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         computation = session.get_one(Computation, job.computation_id)
         return Submission(record_of(job, computation), replayed=True)
 
-    def _enter(self, session: Session, known: "_Known", request: "_Request") -> Submission | str:
+    def _enter(self, session: Session, known: "_Known", request: SubmissionRequest) -> Submission | Again:
         """A new job and, where there is none, its computation; or that whose files are to be checked before."""
         document, owner = request.document, request.owner
         for path, model in document.uploads:
@@ -372,19 +395,18 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
                 raise InputError(path, f"{model} is not among your models; upload it first")
         key = known.keys[request.new]
         computation = known.computations.get(key)
-        if computation is not None and computation.id not in (request.checked, *known.new):
+        if computation is not None and computation.id not in (request.checked, *known.added):
             has_files = computation.state == ComputationState.SUCCEEDED or document.text is None
             if has_files:
-                return computation.id
+                return Again(request, computation.id)
         if computation is None or computation.state != ComputationState.SUCCEEDED:
             self._check_queue(session, owner, known)
         if computation is None:
             computation = known.computations[key] = _computation(request, key)
-            known.new.add(computation.id)
-            session.add(computation)
+            known.added[computation.id] = computation
         job = _job(request, self.timeout_of(request.timeout_s))
         job.computation_id = computation.id
-        session.add(job)
+        known.jobs.append(job)
         session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in request.labels.items())
         subscribe(session, job, computation)
         cached = job.state == JobState.SUCCEEDED
@@ -443,7 +465,7 @@ def _opened(settings: Settings, make: bool) -> JobStore:
     )
 
 
-def _computation(request: _Request, key: str) -> Computation:
+def _computation(request: SubmissionRequest, key: str) -> Computation:
     return Computation(
         id=request.new,
         key=key,
@@ -458,14 +480,14 @@ def _computation(request: _Request, key: str) -> Computation:
     )
 
 
-def _job(request: _Request, timeout_s: float | None) -> Job:
+def _job(request: SubmissionRequest, timeout_s: float | None) -> Job:
     return Job(
         id=uuid.uuid4().hex,
         owner=request.owner,
         analysis=request.document.analysis,
         state=JobState.QUEUED,
         created_at=datetime.now(UTC),
-        labels=request.labels,
+        labels=dict(request.labels),
         priority=request.priority,
         attempt=1,
         timeout_s=timeout_s,
@@ -475,12 +497,13 @@ def _job(request: _Request, timeout_s: float | None) -> Job:
     )
 
 
-def _check_options(labels: Mapping[str, str], priority: int, idempotency_key: str | None) -> None:
+def _check_options(request: SubmissionRequest) -> None:
+    labels, priority, idempotency_key = request.labels, request.priority, request.idempotency_key
     texts = [("labels", text) for pair in labels.items() for text in pair]
     texts += [] if idempotency_key is None else [("idempotency_key", idempotency_key)]
-    for field, text in texts:
+    for name, text in texts:
         if len(text) > LONGEST_TEXT or NOT_IN_TEXT.search(text):
-            raise InputError(field, f"must have at most {LONGEST_TEXT} characters each, and no control characters")
+            raise InputError(name, f"must have at most {LONGEST_TEXT} characters each, and no control characters")
     if len(labels) > MOST_LABELS:
         raise InputError("labels", f"at most {MOST_LABELS} are allowed, not {len(labels)}")
     if not -HIGHEST_PRIORITY <= priority <= HIGHEST_PRIORITY:

@@ -1,7 +1,6 @@
 """What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
 
 import codecs
-from collections.abc import AsyncIterator
 from datetime import datetime
 from functools import cache
 from typing import Annotated, Any
@@ -159,13 +158,13 @@ def list_robots(principal: Reader) -> Page[RobotView]:
     return Page(items=[RobotView.of(robot) for robot in library.describe()])
 
 
-async def _uploaded_body(request: Request) -> AsyncIterator[tuple[str, bytes]]:
+async def _uploaded_body(request: Request) -> tuple[str, bytes]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type not in (ANY_TYPE, *XML_TYPES, *FILE_TYPES):
         allowed = ", ".join((ANY_TYPE, "application/xml", *FILE_TYPES))
         raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
-    async for body in held_body(request, request.app.state.parts.uploads):
-        yield _type_of(body) if media_type == ANY_TYPE else media_type, body
+    body = await held_body(request, request.app.state.parts.uploads)
+    return _type_of(body) if media_type == ANY_TYPE else media_type, body
 
 
 def _type_of(body: bytes) -> str:

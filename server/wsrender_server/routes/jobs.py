@@ -18,7 +18,8 @@ from wsrender_server.admission import Admitted
 from wsrender_server.auth import Principal, Reader, Submitter, check_priority, unless_revoked
 from wsrender_server.hosts import address
 from wsrender_server.job_body import job_body, submission_examples
-from wsrender_server.jobs.records import ENDED, JobRecord, JobState, Submission
+from wsrender_server.jobs.records import ENDED, JobRecord, JobState
+from wsrender_server.jobs.store import SubmissionRequest
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
@@ -112,8 +113,8 @@ async def submit_job(server: Server, principal: Submitter, request: Request, tex
     With `wait` the answer comes when the job has ended (200), or, where the time is up, as without it (202).
     """
     key = _idempotency_key(request)
-    submit = partial(_submit, server, principal, key, request.app.state.keys_at_work)
-    submission = await server.admissions.of(principal.owner, text, submit)
+    with _one_at_a_time(request.app.state.keys_at_work, principal.owner, key):
+        submission = await server.admissions.submit(principal.owner, text, partial(_request, principal, key))
     job = submission.job
     request.state.job_id = job.id
     outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
@@ -268,22 +269,18 @@ def _to_plan(principal: Principal, admitted: Admitted) -> tuple[str, str]:
     return document.sha256, document.text or cast(Path, admitted.written).read_text("utf-8")
 
 
-def _submit(
-    server: Parts, principal: Principal, key: str | None, at_work: dict[tuple[str, str], object], admitted: Admitted
-) -> Submission:
-    document, options, owner = admitted.document, admitted.options, principal.owner
+def _request(principal: Principal, key: str | None, admitted: Admitted) -> SubmissionRequest:
+    options = admitted.options
     check_priority(principal, options.priority, "#/priority")
-    with _one_at_a_time(at_work, owner, key):
-        return server.store.submit(
-            owner,
-            document,
-            written=admitted.written,
-            labels=options.labels,
-            priority=options.priority,
-            timeout_s=options.timeout_s,  # the store applies the limits of the settings
-            idempotency_key=key,
-            body_hash="" if key is None else _body_hash(admitted),
-        )
+    return SubmissionRequest(
+        principal.owner,
+        admitted.document,
+        labels=options.labels,
+        priority=options.priority,
+        timeout_s=options.timeout_s,  # the store applies the limits of the settings
+        idempotency_key=key,
+        body_hash="" if key is None else _body_hash(admitted),
+    )
 
 
 def _idempotency_key(request: Request) -> str | None:

@@ -69,7 +69,7 @@ def test_nobody_is_told_where_the_database_is(client, jobs):
 )
 def test_a_full_disk_or_locked_database_loses_nothing(client, jobs, monkeypatch, error, code):
     with monkeypatch.context() as patch:
-        patch.setattr(jobs.store, "submit", _raises(error))
+        patch.setattr(jobs.store, "submit_all", _raises(error))
         response = client.post("/v1/jobs", json=DOCUMENT)
     assert problem_of(response, 503, code)["retryable"] and int(response.headers["retry-after"]) > 0
     assert client.post("/v1/jobs", json=DOCUMENT).status_code == 202
