@@ -5,7 +5,7 @@
 
 ``maps``: 1 cm × 1 cm × 5° over 1 m², 7.2 M pairs of a placement and a target, from the call to the map, kernels in the
 cache; aims on two idle cores: 1.5 s for the UR5e, 4 s for the Panda. On a GPU the rate beside that of the kernel alone,
-which labels poses that lie there; aim: half of it.
+which labels poses that lie there, and the same of labels alone of larger maps; aim: half of it.
 
 ``scikit``: the Kuka of scikit-robot's wheel (extra bench), sets of ten poses each by a seed. Both place the base in x,
 y and yaw, and count targets to 1 mm and 1°. Told are targets served, and the least joint-limit margin over them: here
@@ -21,11 +21,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
+from wsrender.run.steps import plan
 
 DOWN = [0.0, 1.0, 0.0, 0.0]
 HOLES = [[0.4 * np.cos(0.7 * k) + 0.1, 0.35 * np.sin(0.7 * k), 0.15 + 0.02 * k] for k in range(10)]
 OVER = {"x_m": [-0.5, 0.5, 0.01], "y_m": [-0.5, 0.5, 0.01], "yaw_deg": [0, 360, 5]}
 KERNEL_POSES = 1 << 22
+LABELED = ((0.02, 10), (0.01, 10), (0.01, 40), (0.01, 80), (0.005, 40), (0.005, 80))  # steps [m] and targets
 BOUND, CELL = 0.8, 0.2  # of bases beside scikit-robot [m]
 NEAR = {"position_tolerance_m": 1e-3, "angle_tolerance_rad": float(np.deg2rad(1))}
 # Arm angles from which scikit-robot starts at every base: forward low, near and far.
@@ -56,8 +58,32 @@ def maps(device: str, repeats: int) -> None:
             title = f"{name}, {about['alike']} alike, {device}"
             rates = f"{clock:7.2f} {own:7.2f} {pairs / clock / 1e6:10.2f}"
             print(f"{title:34s} {rates} {labels['served'] / pairs:8.3f} {labels['undecided']:10,}")
-    if device != "cpu":
-        print(f"kernel alone, ur5e: {kernel_rate(device, repeats) / 1e6:.1f} M poses/s")
+    if device == "cpu":
+        return
+    alone = kernel_rate(device, repeats)
+    print(
+        f"kernel alone, ur5e: {alone / 1e6:.1f} M poses/s; labels of placements as bits on the host, poses made there:"
+    )
+    for step, targets in LABELED:
+        pairs, seconds = labels(device, repeats, step, targets)
+        print(f"{pairs / 1e6:8.1f} M pairs, {targets:4d} targets {seconds:8.4f} s {pairs / seconds / alone:6.3f} of it")
+
+
+def labels(device: str, repeats: int, step: float, targets: int) -> tuple[int, float]:
+    """Pairs, and least seconds, of the labels alone of UR5e's placements over 4 m², of poses by a seed."""
+    random = np.random.default_rng(0)
+    over = {"x_m": [-1, 1, step], "y_m": [-1, 1, step], "yaw_deg": [0, 355, 5]}
+    points = random.uniform([-0.6, -0.6, 0.0], [0.6, 0.6, 0.6], (targets, 3)).tolist()
+    about = {"analysis": "base_placement", "robot": "ur5e", "points_m": points, "quats_wxyz": [DOWN] * targets}
+    analysis = plan({**about, "over": over, "use_symmetry": False, "refine": False, "device": device})
+    over, search = analysis.job.over, analysis._placements(None)
+    search.bits(over, range(over.count))
+    seconds = []
+    for _ in range(repeats):
+        started = time.perf_counter()
+        search.bits(over, range(over.count))
+        seconds.append(time.perf_counter() - started)
+    return over.count * targets, min(seconds)
 
 
 def kernel_rate(device: str, repeats: int) -> float:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import warp as wp
 
 from wsrender_kernels.factories import factory
-from wsrender_kernels.options import CUDA_OPTIONS, LONG_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, LONG_OPTIONS, SHORT_OPTIONS
 
 LANES = 16
 BRANCHES = 8
@@ -208,6 +208,41 @@ def closed_bits_kernel(shape: ClosedFormShape, backwards: bool, cuda: bool) -> w
         block(wp.tid(), count, first, step, turns, bit, least, numbers, motions, positions, reached, missed)
 
     return closed_bits
+
+
+@factory
+def bits_by_base_kernel(cuda: bool) -> wp.Kernel:
+    """Kernel that puts the bits of each base side by side, and lists the bases that leave some pose open.
+
+    In: ``asked`` (bytes,), the bits of poses; ``bits``, rows of ``pitch`` bases: ``bytes`` of those that
+    `closed_bits_kernel` has set of reached poses, and as many of missed ones. Out: ``reached`` and ``missed``
+    (bases * bytes,), and in any order ``left``, as many as ``lefts`` (1,) counts.
+    """
+    bytes_ = wp.array(dtype=wp.uint8)
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS if cuda else SHORT_OPTIONS, enable_backward=False)
+    def bits_by_base(
+        # in
+        bytes: wp.int32,
+        pitch: wp.int32,
+        asked: bytes_,
+        bits: bytes_,
+        # out
+        reached: bytes_,
+        missed: bytes_,
+        left: wp.array(dtype=wp.int32),
+        lefts: wp.array(dtype=wp.int32),
+    ):
+        base, is_open = wp.tid(), wp.int32(0)
+        for byte in range(bytes):
+            reaches, misses = bits[byte * pitch + base], bits[(bytes + byte) * pitch + base]
+            reached[base * bytes + byte] = reaches
+            missed[base * bytes + byte] = misses
+            is_open |= wp.int32(asked[byte]) & ~(wp.int32(reaches) | wp.int32(misses))
+        if is_open != 0:
+            left[wp.atomic_add(lefts, 0, 1)] = base
+
+    return bits_by_base
 
 
 def _bits_body(shape: ClosedFormShape, backwards: bool) -> str:

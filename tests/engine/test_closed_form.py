@@ -360,14 +360,17 @@ def test_bits_of_placed_bases_are_those_of_their_slacks(backwards, numbers):
     bases[:, :3, 3] += positions[np.array(numbers) // 7] - origin
     T, targets = chain.poses(anywhere(chain, 11)), np.array([0, 1, 2, 3, 7, 8, 9, 10, 15, 16, 25])
     asked = {"origin": origin, "margin": 1e-3, "device": "cpu", "threads": 2}
-    found = placed_bits(closed, motions, positions, numbers, T, targets, **asked)
+    *found, left = placed_bits(closed, motions, positions, numbers, T, targets, **asked)
     slack = placed_slacks(closed, bases, T, device="cpu", threads=2)
     for bits, wanted in zip(found, (slack > CLOSED_MARGIN, slack < -1e-3), strict=True):
-        assert bits.shape == (4, len(numbers))
-        each = np.unpackbits(bits, axis=0, bitorder="little")
+        assert bits.shape == (len(numbers), 4)
+        each = np.unpackbits(bits.T, axis=0, bitorder="little")
         np.testing.assert_array_equal(each[targets], wanted)
         assert not np.delete(each, targets, axis=0).any()
+    is_open = (slack >= -1e-3) & (slack <= CLOSED_MARGIN)
+    np.testing.assert_array_equal(left, np.flatnonzero(is_open.any(axis=0)))
     assert 0 < (slack < -1e-3).sum() < slack.size and (slack > CLOSED_MARGIN).any()
+    assert len(numbers) < 100 or 0 < len(left) < len(numbers)
 
 
 def test_what_is_not_a_number_is_undecided():

@@ -47,9 +47,7 @@ def test_bits_are_the_labels(name, at, numbers):
     coordinates = SPACE.coordinates(np.array(numbers))
     found = search.decide(coordinates * IN_DEGREES, placed(coordinates))
     masks = found.label == REACHABLE, found.label == UNDECIDED, found.proven
-    bits = search.bits(SPACE, numbers)
-    assert bits.flags.c_contiguous
-    for got, mask in zip(bits, masks, strict=True):
+    for got, mask in zip(search.bits(SPACE, numbers), masks, strict=True):
         np.testing.assert_array_equal(got, np.packbits(mask, axis=1, bitorder="little"))
     assert len(numbers) < 100 or (masks[0].any() and masks[2].any())
 

@@ -15,6 +15,7 @@ from wsrender_kernels.closed_form import (
     TARGET_ROWS,
     WORLD_FIELDS,
     ClosedFormShape,
+    bits_by_base_kernel,
     closed_bits_kernel,
     closed_form_kernel,
     closed_labels_kernel,
@@ -164,8 +165,10 @@ def placed_bits(
     margin: float,
     device: str = "auto",
     threads: int | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Which bases reach poses (K, 4, 4), and which are proven not to, as bits: (B, N) uint8 each, of N ``numbers``.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which bases reach poses (K, 4, 4), and which are proven not to, as bits: (N, B) uint8 each, of N ``numbers``.
+
+    And those (M,), by their place among the N, of which some pose is neither.
 
     A base of number i stands at ``motions`` (A, 4, 4) number i modulo A, moved by ``positions`` (S, 3) [m] number
     i // A. Poses are seen from the ``origin`` (3,) [m] of the world of those. Pose k sets bit ``targets[k]`` modulo 8
@@ -181,11 +184,14 @@ def placed_bits(
     A, rows = len(motions), np.concatenate([motions[:, :3, :3].reshape(-1, 9), motions[:, :3, 3]], axis=1)
     world = {f"origin{k}": x for k, x in enumerate(origin)} | {"scale": 1 / closed.solved.axes.reach}
     arms = np.stack([packed(closed.numbers_to(T) | world, WORLD_FIELDS) for T in T_world_tip])
-    found = np.zeros((2, int(targets.max()) // 8 + 1, len(numbers)), np.uint8)
+    by_base = loaded(bits_by_base_kernel(devices[0].is_cuda), *devices)
+    asked = np.zeros(int(targets.max()) // 8 + 1, np.uint8)
+    np.bitwise_or.at(asked, targets // 8, np.left_shift(1, targets % 8).astype(np.uint8))
+    found = np.empty((2, len(numbers), B := len(asked)), np.uint8)
     size = min(max(LEAST_SHARE, -(-len(numbers) // len(workers))), PLACED_BATCH if devices[0].is_cuda else BATCH)
     size = min(size, max(LANES, LARGEST_NUMBER // numbers.step))
 
-    def run(numbered: tuple[int, int]) -> None:
+    def run(numbered: tuple[int, int]) -> np.ndarray:
         number, begin = numbered
         of, device = numbers[begin : begin + size], workers[number % len(workers)]
         whole = max(len(of), LANES)  # a task of the CPU takes as many
@@ -193,19 +199,27 @@ def placed_bits(
         places = np.arange(start, start + (first + (whole - 1) * of.step) // A + 1)
         tables = [np.ravel(arms), rows, positions[np.minimum(places, len(positions) - 1)]]
         given, *rest = (given_array(part, real, device) for part in tables)
-        bits = wp.zeros(found.shape[0] * found.shape[1] * whole, dtype=wp.uint8, device=device)
+        bits = wp.zeros(2 * B * whole, dtype=wp.uint8, device=device)
         dim, F = whole if device.is_cuda else -(-whole // LANES), len(WORLD_FIELDS)
         for k, target in enumerate(targets.tolist()):
-            reached, missed = (
-                bits[at * whole : (at + 1) * whole] for at in (target // 8, target // 8 + found.shape[1])
-            )
+            reached, missed = (bits[at * whole : (at + 1) * whole] for at in (target // 8, target // 8 + B))
             inputs = [whole, first, of.step, A, 1 << target % 8, -margin, given[k * F : (k + 1) * F], *rest]
             launch(kernel, dim=dim, inputs=inputs, outputs=[reached, missed], device=device)
-        found[..., begin : begin + len(of)] = bits.numpy().reshape(*found.shape[:2], whole)[..., : len(of)]
+        kept = [given_array(part[begin : begin + len(of)], wp.uint8, host) for part in found]
+        outputs = [wp.empty_like(part, device=device) for part in kept] if device.is_cuda else kept
+        left, lefts = (wp.zeros(count, dtype=wp.int32, device=device) for count in (len(of), 1))
+        inputs = [B, whole, given_array(asked, wp.uint8, device), bits]
+        launch(by_base, dim=len(of), inputs=inputs, outputs=[*outputs, left, lefts], device=device)
+        if device.is_cuda:
+            for part, output in zip(kept, outputs, strict=True):
+                wp.copy(part, output)
+        count = int(lefts.numpy()[0])  # waits for all of it
+        return begin + np.sort(left[:count].numpy() if count else np.zeros(0, np.int32))
 
+    host = wp.get_device("cpu")
     with ThreadPoolExecutor(len(workers)) as pool:
-        list(pool.map(run, enumerate(range(0, len(numbers), size))))
-    return found[0], found[1]
+        left = list(pool.map(run, enumerate(range(0, len(numbers), size))))
+    return found[0], found[1], np.concatenate(left)
 
 
 def shape_of(closed: ClosedForm, precision: str, keep: bool) -> ClosedFormShape:

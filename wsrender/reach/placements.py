@@ -32,6 +32,7 @@ from wsrender.robots.chain import Chain
 from wsrender.robots.frames import inverse_of_rigid
 from wsrender.robots.moving_base import MovingBase
 
+PAIRS_TOLD = 1 << 22  # whose bits are told apart at a time
 SEARCHED = 16  # tries from the nearest admitted samples, of a pose that may have other postures than those known
 
 Value = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -175,37 +176,40 @@ class Placements:
         """Whether `bits` can tell: closed forms decide, without constraints and a value."""
         return self.solver.closed is not None and self.admission is None
 
-    def bits(self, space: PlacementSpace, numbers: range, targets: np.ndarray) -> np.ndarray:
-        """Labels that `decide` has of N placements of a ``space`` by number, as bits (3, B, N) uint8.
+    def bits(self, space: PlacementSpace, numbers: range, targets: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Labels that `decide` has of N placements of a ``space`` by number, as bits (N, B) uint8.
 
         Served, undecided, and proven to be out of reach. Target k sets bit ``targets[k]`` modulo 8 of byte
         ``targets[k]`` // 8. What closed forms leave open is decided pair by pair.
         """
-        turns = math.prod(space.shape[3:])
+        turns, K = math.prod(space.shape[3:]), len(targets)
         first, last = (number // turns for number in (numbers[0], numbers[-1]))
         angles, positions = space.coordinates(np.arange(turns)), space.coordinates(turns * np.arange(first, last + 1))
         angles[:, :3] = 0.0
         moved = range(numbers.start - turns * first, numbers.stop - turns * first, numbers.step)
-        served, proven = self._certain_bits(placed(angles) @ self.base.T_frame_base, positions[:, :3], moved, targets)
-        asked = np.zeros((8 * len(served), 1), bool)
-        asked[targets] = True
-        undecided, left = np.zeros_like(served), np.bitwise_and(~(served | proven), _packed(asked), dtype=np.uint8)
-        for places in _parts(np.flatnonzero(left.any(axis=0)), BATCH // len(targets)):
+        motions = placed(angles) @ self.base.T_frame_base
+        served, proven, left = self._certain_bits(motions, positions[:, :3], moved, targets)
+        undecided = np.zeros_like(served)
+        for places in _parts(left, PAIRS_TOLD // K):
             coordinates = space.coordinates(numbers.start + numbers.step * places)
-            place, k = np.nonzero(np.unpackbits(left[:, places], axis=0, bitorder="little")[targets].T)
-            at, bases = place * len(targets) + k, self._bases(placed(coordinates))
-            of, _ = self._decided(at, bases, coordinates * IN_DEGREES)
-            masks = of.label == REACHABLE, of.label == UNDECIDED, of.proven
+            bases = self._bases(placed(coordinates))
+            is_open = ~_unpacked(served[places] | proven[places], targets)
+            at = np.flatnonzero(is_open)
+            masks = np.zeros((3, *is_open.shape), bool)
+            for some in _parts(at, BATCH):
+                of, _ = self._decided(some, bases, coordinates * IN_DEGREES)
+                for mask, each in zip(masks, (of.label == REACHABLE, of.label == UNDECIDED, of.proven), strict=True):
+                    mask.ravel()[some] = each
             for bits, mask in zip((served, undecided, proven), masks, strict=True):
-                each = np.zeros((8 * len(bits), len(places)), bool)
-                each[targets[k], place] = mask
-                bits[:, places] |= _packed(each)
-        return np.stack([served, undecided, proven])
+                each = np.zeros((len(places), 8 * bits.shape[1]), bool)
+                each[:, targets] = mask
+                bits[places] |= np.packbits(each, axis=1, bitorder="little")
+        return served, undecided, proven
 
     def _certain_bits(
         self, motions: np.ndarray, positions: np.ndarray, numbers: range, targets: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """What closed forms alone say of bases as `placed_bits` has them: served, and proven to be out of reach."""
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What closed forms alone say of bases, as `placed_bits` has them."""
         closed = self.solver.closed
         assert closed
         if isinstance(closed, ClosedLabels):
@@ -221,8 +225,8 @@ class Placements:
         found = []
         for name in (REACHABLE, UNREACHABLE):
             each[:, targets] = label == name
-            found.append(np.ascontiguousarray(np.packbits(each, axis=1, bitorder="little").T))
-        return found[0], found[1]
+            found.append(np.packbits(each, axis=1, bitorder="little"))
+        return found[0], found[1], np.flatnonzero((label == UNDECIDED).any(axis=1))
 
     def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
         """Of one placement, (1, …) as above, what is known (K,), and configurations (K, n) [rad or m].
@@ -415,13 +419,16 @@ class PlacementsOfKinds:
         """As `Placements.by_bits`, of all parts."""
         return all(part.by_bits for part in self.parts)
 
-    def bits(self, space: PlacementSpace, numbers: range) -> np.ndarray:
-        """As `Placements.bits`, (3, N, B), target k that of byte k // 8 and weight 2^(k % 8)."""
-        found = np.zeros((3, -(-sum(map(len, self.at)) // 8), len(numbers)), np.uint8)
-        for part, at in zip(self.parts, self.at, strict=True):
-            bits = part.bits(space, numbers, at)
-            found[:, : bits.shape[1]] |= bits
-        return np.ascontiguousarray(found.transpose(0, 2, 1))
+    def bits(self, space: PlacementSpace, numbers: range) -> tuple[np.ndarray, ...]:
+        """As `Placements.bits`, of target k that of byte k // 8 and weight 2^(k % 8)."""
+        first, *others = (part.bits(space, numbers, at) for part, at in zip(self.parts, self.at, strict=True))
+        if not others:
+            return first
+        found = tuple(np.zeros((len(numbers), -(-sum(map(len, self.at)) // 8)), np.uint8) for _ in first)
+        for part in (first, *others):
+            for bits, each in zip(found, part, strict=True):
+                bits[:, : each.shape[1]] |= each
+        return found
 
     def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
         """As `Placements.configurations`."""
@@ -458,6 +465,6 @@ def _parts(at: np.ndarray, count: int) -> Iterator[np.ndarray]:
     return (at[first : first + each] for first in range(0, len(at), each))
 
 
-def _packed(mask: np.ndarray) -> np.ndarray:
-    """Bits (B, N) uint8 of (8 B, N) bool."""
-    return np.packbits(mask, axis=0, bitorder="little")
+def _unpacked(bits: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """Of bits (N, B) uint8 those of targets (K,), (N, K) bool."""
+    return np.unpackbits(bits, axis=1, bitorder="little")[:, targets].astype(bool)

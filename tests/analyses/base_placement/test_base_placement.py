@@ -12,7 +12,7 @@ from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_the_command_line
 from wsrender.analyses.base_placement.result import PlacementMap
-from wsrender.analyses.base_placement.run import PAIRS, PAIRS_ON_CUDA
+from wsrender.analyses.base_placement.run import PAIRS, PAIRS_MADE, PAIRS_ON_CUDA, PLACES_MADE
 from wsrender.analyses.jobs import parse_job
 from wsrender.documents.constraints import Apart, Constraints
 from wsrender.documents.placements import COORDINATES, mounted, placed
@@ -325,7 +325,14 @@ def test_what_is_searched_tells_of_its_progress_and_a_gpu_gets_more_at_a_time(mo
     free, guarded = (plan(job("ur5e", RING, [DOWN] * 6, over=TURNED, **fields)) for fields in ({}, GUARDED))
     assert guarded._together * guarded._alike * 6 <= PAIRS < (free._together + 1) * 6
     monkeypatch.setattr(type(free), "device", "cuda:0")
-    assert free._together == PAIRS_ON_CUDA // 6 > 3 * PAIRS // 6 and guarded._together * guarded._alike * 6 <= PAIRS
+    assert guarded._together * guarded._alike * 6 <= PAIRS
+    assert free._together == PLACES_MADE, "a GPU makes these bases"
+    many, balls = (
+        plan(job("ur5e", RING * 20, [DOWN] * 120, over=TURNED)),
+        plan(job("franka_panda", RING, [DOWN] * 6, over=TURNED)),
+    )
+    assert many._together == PAIRS_MADE // 120 < PLACES_MADE
+    assert balls._together == PAIRS_ON_CUDA // 6 > 3 * PAIRS // 6
 
 
 def test_shards_hold_all_placements_that_are_alike():

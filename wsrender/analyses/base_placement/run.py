@@ -56,8 +56,9 @@ from wsrender.robots.moving_base import MovingBase
 from wsrender.volume.table import Table
 
 # Pairs of a placement and a target that are decided together, by closed forms alone of a GPU, whose launches count; by
-# others counted with the placements that are alike, so that they tell of their progress.
-PAIRS, PAIRS_ON_CUDA = 1 << 20, 1 << 22
+# others counted with the placements that are alike, so that they tell of their progress. Of bases that a GPU makes all,
+# mostly: what closed forms leave open of them is decided at once, and 200 M pairs take a tenth of a second.
+PAIRS, PAIRS_ON_CUDA, PAIRS_MADE, PLACES_MADE = 1 << 20, 1 << 22, 1 << 28, 1 << 22
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
 NEAR_BALLS_PER_S = 6e3  # the same under constraints, where searches in balls say which are out of reach
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
@@ -306,7 +307,12 @@ class BasePlacementAnalysis(Analysis):
     def _together(self) -> int:
         """Placements that are decided together, of those that are alike one."""
         K, alone = len(self.targets), not (self._constrained or self.score)
-        pairs = (PAIRS_ON_CUDA if self.device.startswith("cuda") else PAIRS) if alone else PAIRS // self._alike
+        if not alone:
+            pairs = PAIRS // self._alike
+        elif not self.device.startswith("cuda"):
+            pairs = PAIRS
+        else:
+            pairs = min(PAIRS_MADE, K * PLACES_MADE) if self._makes_bases else PAIRS_ON_CUDA
         return max(1, pairs // K)
 
     @property
@@ -372,14 +378,13 @@ class BasePlacementAnalysis(Analysis):
         for begin in range(start, end, each):
             numbers = range(begin, min(begin + each, end), self._alike)
             if self._by_bits and search.by_bits:
-                served, undecided, proven = search.bits(self.job.over, numbers)
-                rows = [served, undecided, proven]
+                rows = [*search.bits(self.job.over, numbers)]
             else:
                 rows = self._rows(self._decided(search, np.array(numbers)))
                 rows += [least_value(self._decided(other, np.array(numbers)).value) for other in others]
-            parts.append([np.repeat(row, self._alike, axis=0) for row in rows])
+            parts.append(rows if self._alike == 1 else [np.repeat(row, self._alike, axis=0) for row in rows])
             tell((numbers[-1] + self._alike) * K - first)
-        arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
+        arrays = parts[0] if len(parts) == 1 else [np.concatenate(part) for part in zip(*parts, strict=True)]
         names = [*self._names_of_bits, *("score", "score_2")[: len(self.scores)]]
         return rows_of_shard(first, dict(zip(names, arrays, strict=True)))
 
