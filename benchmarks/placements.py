@@ -65,11 +65,11 @@ def maps(device: str, repeats: int) -> None:
         f"kernel alone, ur5e: {alone / 1e6:.1f} M poses/s; labels of placements as bits on the host, poses made there:"
     )
     for step, targets in LABELED:
-        pairs, seconds = labels(device, repeats, step, targets)
+        pairs, seconds = labeled(device, repeats, step, targets)
         print(f"{pairs / 1e6:8.1f} M pairs, {targets:4d} targets {seconds:8.4f} s {pairs / seconds / alone:6.3f} of it")
 
 
-def labels(device: str, repeats: int, step: float, targets: int) -> tuple[int, float]:
+def labeled(device: str, repeats: int, step: float, targets: int) -> tuple[int, float]:
     """Pairs, and least seconds, of the labels alone of UR5e's placements over 4 m², of poses by a seed."""
     random = np.random.default_rng(0)
     over = {"x_m": [-1, 1, step], "y_m": [-1, 1, step], "yaw_deg": [0, 355, 5]}

@@ -16,9 +16,6 @@ from wsrender_server.settings import Settings
 Application = Callable[[Any, Any, Any], Awaitable[None]]  # ASGI
 
 STOP_S = 3  # for answers under way
-# A request makes thousands of objects and leaves no cycles of them; by Python's usual 700 a burst is looked at 1,000
-# times, twice as a whole.
-GARBAGE = (50_000, 20, 20)
 
 
 def listen(settings: Settings) -> socket.socket:
@@ -112,7 +109,6 @@ class _Announced(uvicorn.Server):
             # What is there by now stays: looking for garbage in it would hold up requests for a tenth of a second.
             gc.collect()
             gc.freeze()
-            gc.set_threshold(*GARBAGE)
             self._on_ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
