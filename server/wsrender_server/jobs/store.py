@@ -116,8 +116,8 @@ class _Known:
         # Locked until the transaction ends; in order, so that two transactions never wait for each other.
         found = session.scalars(query.order_by(Computation.id).with_for_update())
         self.computations = {computation.key: computation for computation in found}
-        self.added: dict[str, Computation] = {}
-        """Computations that were added, by id."""
+        self.added: list[Computation] = []
+        """Computations that were added."""
         self.jobs: list[Job] = []
         """Jobs that were added."""
         self.queued: dict[str, int] = {}
@@ -219,7 +219,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
             with self.transactions.write() as session, session.no_autoflush:
                 known = _Known(session, requests, self.identity)
                 answers = [self._answer(session, known, request) for request in requests]
-                session.bulk_save_objects([*known.added.values(), *known.jobs])  # before what refers to them
+                session.bulk_save_objects([*known.added, *known.jobs])  # before what refers to them
         except IntegrityError:
             if len(requests) == 1:
                 return [Again(requests[0], None)]
@@ -395,7 +395,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
                 raise InputError(path, f"{model} is not among your models; upload it first")
         key = known.keys[request.new]
         computation = known.computations.get(key)
-        if computation is not None and computation.id not in (request.checked, *known.added):
+        if computation is not None and computation.id != request.checked:
             has_files = computation.state == ComputationState.SUCCEEDED or document.text is None
             if has_files:
                 return Again(request, computation.id)
@@ -403,7 +403,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
             self._check_queue(session, owner, known)
         if computation is None:
             computation = known.computations[key] = _computation(request, key)
-            known.added[computation.id] = computation
+            known.added.append(computation)
         job = _job(request, self.timeout_of(request.timeout_s))
         job.computation_id = computation.id
         known.jobs.append(job)
