@@ -29,8 +29,10 @@ LONG_JOB = {
     "robot": {"library": "ur5e"},
     "indices": ["manipulability"],
     "voxel_size_m": 0.1,
-    "sampling": {"method": "sobol", "count": 10**10},
+    "sampling": {"method": "sobol", "count": 10**11},
+    "max_samples": 10**11,
     "constraints": {"self_collision": True},
+    "device": "cpu",
 }
 GOALS_MS = {"p50": (1, 0.5), "p99.9": (0, 3.0)}  # ticks and time above the echo
 

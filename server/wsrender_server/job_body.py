@@ -138,13 +138,21 @@ def _kind(value: Any) -> str:
 
 def refused(error: DocumentError, text: bytes, schema: str, prefix: str) -> HttpProblem:
     """The answer to a wrong document: 422 if the body breaks its published schema, 409 if it contradicts itself."""
-    keeps_to_schema = len(text) <= LARGEST_CHECKED and _validator(schema).is_valid(read_json(text))
-    return refusal(problem_of_error(error, prefix), 409 if keeps_to_schema else 422)
+    return refusal(problem_of_error(error, prefix), 409 if _keeps_to_schema(text, schema) else 422)
+
+
+def _keeps_to_schema(text: bytes, schema: str) -> bool:
+    if len(text) > LARGEST_CHECKED:
+        return False
+    try:
+        return _validator(schema).is_valid(read_json(text))
+    except UnicodeEncodeError:  # half of a surrogate pair is no text
+        return False
 
 
 @cache
 def _validator(name: str) -> Any:
-    from jsonschema import Draft202012Validator
+    from jsonschema_rs import Draft202012Validator  # in Python items of many kinds take a second for each kilobyte
 
     return Draft202012Validator({"$ref": f"#/components/schemas/{name}", "components": {"schemas": body_schemas()}})
 

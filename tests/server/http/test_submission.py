@@ -1,6 +1,7 @@
 """Submitting jobs: answers, caching, replay, quotas; wrong documents with pointers to what is wrong."""
 
 import json
+import time
 
 import pytest
 from wsrender_server.jobs.documents import CanonicalDocument
@@ -348,3 +349,18 @@ def test_obstacles_of_earlier_documents_are_the_same_job(client):
 def test_every_golden_job_is_admitted(name, client):
     response = client.post("/v1/jobs", json=job_of(name))
     assert response.status_code == 202, response.text
+
+
+def test_a_wrong_body_of_many_kinds_of_things_is_refused_soon(client):
+    """A validator that looks at all of them, as each kind, and as parts of each analysis, took seconds a kilobyte."""
+    before = time.process_time()
+    response = client.post("/v1/jobs", json={**DOCUMENT, "environment": {"items": [{"x": 1}] * 7000}})
+    problem_of(response, 422)
+    assert time.process_time() - before < 10
+
+
+@pytest.mark.parametrize("path", ["/v1/jobs", "/v1/robots:view"])
+def test_half_of_a_character_is_refused(client, path):
+    content = json.dumps({"robot": {"library": "\ud800"}, "wrong": 1})
+    response = client.post(path, content=content, headers={"Content-Type": "application/json"})
+    assert 400 <= response.status_code < 500, response.text
