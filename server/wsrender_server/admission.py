@@ -4,7 +4,7 @@ import asyncio
 import gc
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import repeat
 from pathlib import Path
@@ -221,14 +221,14 @@ class Admissions:
         Raises as `admit`, `check_uploads` and `JobStore.submit`.
         """
         if len(text) > LONGEST_TOGETHER:
-            return await self.of(owner, text, lambda found: self._submit_alone(request_of(found), found.written))
+            return await self.of(owner, text, lambda found: self._store.submit_alone(request_of(found), found.written))
         asked: _Body | SubmissionRequest = _Body(owner, text, request_of)
         for _ in range(ATTEMPTS):
             answer = await self._together.answer(asked)
             if isinstance(answer, Submission):
                 return answer
             if not isinstance(answer, Again):  # too long for a row
-                return await run_in_threadpool(self._submit_alone, answer)
+                return await run_in_threadpool(self._store.submit_alone, answer)
             asked = await run_in_threadpool(self._store.prepare_again, answer)
         raise StoreUnavailable(BUSY)
 
@@ -250,10 +250,6 @@ class Admissions:
             return self._checked(asked.owner, admit(asked.text, self._max_samples), asked.request_of)
         except Exception as error:  # its own; the others go on
             return error
-
-    def _submit_alone(self, request: SubmissionRequest, written: Path | None = None) -> Submission:
-        options = {each.name: getattr(request, each.name) for each in fields(request)}
-        return self._store.submit(written=written, **options)
 
     async def of(self, owner: str, text: bytes, then: Callable[[Admitted], Found]) -> Found:
         """What ``then`` makes of the submission of a body, in a thread; raises as `admit` and `check_uploads`."""

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from wsrender.documents.placements import IN_DEGREES, PlacementSpace, placed
 from wsrender.reach import InverseSolver
+from wsrender.reach import placements as module
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.placements import Placements, PlacementsOfKinds
 from wsrender.robots.moving_base import MovingBase
@@ -52,8 +53,11 @@ def test_bits_are_the_labels(name, at, numbers):
     assert len(numbers) < 100 or (masks[0].any() and masks[2].any())
 
 
-def test_pairs_that_closed_forms_leave_open_are_decided(monkeypatch):
-    """With a margin so wide that many are left."""
+@pytest.mark.parametrize(("told", "batch"), [(1 << 22, 1 << 16), (300, 1 << 16), (1 << 22, 37)])
+def test_pairs_that_closed_forms_leave_open_are_decided(monkeypatch, told, batch):
+    """With a margin so wide that many are left; at once, or in parts."""
+    monkeypatch.setattr(module, "PAIRS_TOLD", told)
+    monkeypatch.setattr(module, "BATCH", batch)
     search = placements("ur5e", [np.arange(10)])
     coordinates = SPACE.coordinates(np.arange(0, SPACE.count, 5))
     monkeypatch.setattr(type(search.parts[0].solver.closed), "margin", 0.5)

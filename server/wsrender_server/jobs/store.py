@@ -186,11 +186,14 @@ class JobStore(ComputationStore, ResultStore, KeyStore, WebhookStore):
         """
         if not isinstance(document, CanonicalDocument):
             document = CanonicalDocument.of(document)
-        request, used = SubmissionRequest(owner, document, **options), ""
+        return self.submit_alone(SubmissionRequest(owner, document, **options), written)
+
+    def submit_alone(self, request: SubmissionRequest, written: Path | None = None) -> Submission:
+        """As `submit`: what is asked for, whose document may be long, in transactions of its own."""
         _check_options(request)
         self.files.check_space()
-        new = request.new
-        request = replace(request, document=document.kept(self.files, new, written))
+        new, used = request.new, ""
+        request = replace(request, document=request.document.kept(self.files, new, written))
         try:
             for _ in range(ATTEMPTS):
                 (answer,) = self.submit_all([request])

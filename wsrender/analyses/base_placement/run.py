@@ -57,7 +57,7 @@ from wsrender.volume.table import Table
 
 # Pairs of a placement and a target that are decided together, by closed forms alone of a GPU, whose launches count; by
 # others counted with the placements that are alike, so that they tell of their progress. Of bases that a GPU makes all,
-# mostly: what closed forms leave open of them is decided at once, and 200 M pairs take a tenth of a second.
+# mostly: what closed forms leave open of them is searched at once, and 200 M pairs take a second.
 PAIRS, PAIRS_ON_CUDA, PAIRS_MADE, PLACES_MADE = 1 << 20, 1 << 22, 1 << 28, 1 << 22
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
 NEAR_BALLS_PER_S = 6e3  # the same under constraints, where searches in balls say which are out of reach
